@@ -1,0 +1,39 @@
+#pragma once
+// Localisation only, in a saved map.
+
+#include <mrpt/obs/CObservation.h>
+
+#include <memory>
+#include <optional>
+
+#include "maps/map_file.h"
+#include "slam/pose_estimate.h"
+#include "slam/rig.h"
+#include "slam/slam_config.h"
+
+namespace rovigo::slam {
+
+/// Where somebody says the rover is (RViz's pose estimate); wide enough to be true.
+struct PosePrior {
+  TPose2D map_from_base;
+  double sigma_position_m = 0.25;
+  double sigma_heading_rad = 0.26;
+};
+
+/// Feed it every observation in time order. Without a prior it finds itself by appearance first,
+/// geometry to confirm; it says kLost until then.
+class Localizer {
+ public:
+  Localizer(const SlamConfig& config, const Rig& rig, const maps::SavedMap& map,
+            const std::optional<PosePrior>& prior);
+  ~Localizer();
+
+  /// The pose after this observation: corrected by a camera frame, carried on by wheels and gyro.
+  PoseEstimate process(const mrpt::obs::CObservation& observation);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rovigo::slam

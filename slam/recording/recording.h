@@ -1,0 +1,55 @@
+#pragma once
+// Recordings, read and written: one interface over MRPT rawlogs and TUM directories.
+
+#include <mrpt/obs/CObservation.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "maps/map_file.h"
+#include "slam/rig.h"
+
+namespace rovigo::slam {
+
+/// What a recording says about itself before its first observation is read.
+struct RecordingInfo {
+  std::string name;    ///< base name
+  std::string format;  ///< "rawlog", "tum", "bag"
+  Rig rig;
+  std::optional<maps::SimulationOrigin> simulation;
+};
+
+struct OpenOptions {
+  std::optional<std::filesystem::path> camera_info;  ///< ROS camera_info YAML that overrides
+};
+
+class RecordingReader {
+ public:
+  virtual ~RecordingReader() = default;
+  virtual const RecordingInfo& info() const = 0;
+  /// The next observation in time order, images decoded; null at the end. Throws InputError on
+  /// damage, naming file and position. `progress()` is the share read so far, 0 .. 1.
+  virtual mrpt::obs::CObservation::Ptr next() = 0;
+  virtual double progress() const = 0;
+};
+
+/// Opens a `.rawlog` or a TUM directory. Throws InputError for anything missing, empty or foreign.
+std::unique_ptr<RecordingReader> open_recording(const std::filesystem::path& path,
+                                                const OpenOptions& options = {});
+
+class RecordingWriter {
+ public:
+  virtual ~RecordingWriter() = default;
+  virtual void write(const mrpt::obs::CObservation& observation) = 0;
+  /// Closes the files and moves them in place: a recording cut short leaves no half file behind.
+  virtual void finish() = 0;
+};
+
+std::unique_ptr<RecordingWriter> create_rawlog(const std::filesystem::path& path,
+                                               const RecordingInfo& info);
+std::unique_ptr<RecordingWriter> create_tum_directory(const std::filesystem::path& directory,
+                                                      const RecordingInfo& info);
+
+}  // namespace rovigo::slam
