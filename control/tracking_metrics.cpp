@@ -1,0 +1,121 @@
+#include "control/tracking_metrics.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace rovigo::control {
+namespace {
+
+using maps::wrap_angle;
+
+/// Root mean square and largest size of a series.
+class Spread {
+ public:
+  void add(double value) {
+    sum_of_squares_ += value * value;
+    max_ = std::max(max_, std::abs(value));
+    ++count_;
+  }
+  double rms() const {
+    return count_ > 0 ? std::sqrt(sum_of_squares_ / static_cast<double>(count_)) : 0.0;
+  }
+  double max() const { return max_; }
+
+ private:
+  double sum_of_squares_ = 0.0;
+  double max_ = 0.0;
+  std::size_t count_ = 0;
+};
+
+bool is_saturated(const TTwist2D& command, const CommandLimits& limits) {
+  constexpr double kAlmost = 1.0 - 1e-6;
+  return std::abs(command.vx) >= kAlmost * limits.max_speed_m_s ||
+         std::abs(command.omega) >= kAlmost * limits.max_yaw_rate_rad_s;
+}
+
+/// Distance of `offset` (planned point to true point) along the direction `yaw`.
+double along(const TPose2D& reference, const TPose2D& truth) {
+  return (truth.x - reference.x) * std::cos(reference.phi) +
+         (truth.y - reference.y) * std::sin(reference.phi);
+}
+
+}  // namespace
+
+double cross_track_error_m(const planning::Trajectory& planned, const TPoint2D& point) {
+  assert(!planned.points.empty());
+  const auto& points = planned.points;
+  const TPoint2D first = maps::position_of(points.front().pose);
+  double best_squared = std::numeric_limits<double>::infinity();
+  double sign = 1.0;
+  const auto consider = [&](const TPoint2D& a, const TPoint2D& b) {
+    const double dx = b.x - a.x, dy = b.y - a.y;
+    const double px = point.x - a.x, py = point.y - a.y;
+    const double length_squared = dx * dx + dy * dy;
+    const double f =
+        length_squared > 0.0 ? std::clamp((px * dx + py * dy) / length_squared, 0.0, 1.0) : 0.0;
+    const double ex = px - f * dx, ey = py - f * dy;
+    const double squared = ex * ex + ey * ey;
+    if (squared >= best_squared) return;
+    best_squared = squared;
+    sign = dx * py - dy * px < 0.0 ? -1.0 : 1.0;
+  };
+  consider(first, first);
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const TPoint2D a = maps::position_of(points[i - 1].pose);
+    const TPoint2D b = maps::position_of(points[i].pose);
+    if (a.x != b.x || a.y != b.y) consider(a, b);
+  }
+  return sign * std::sqrt(best_squared);
+}
+
+DriveMetrics measure(const DriveLog& log, const planning::Trajectory& planned, const TPose2D& goal,
+                     bool goal_heading_given, const CommandLimits& limits) {
+  DriveMetrics m;
+  m.goal_heading_given = goal_heading_given;
+  m.path_length_m = planning::length_m(planned);
+  m.planned_duration_s = planned.duration_s();
+  if (log.steps.empty()) return m;
+
+  Spread cross, along_track, heading, estimate, speed;
+  std::size_t saturated = 0;
+  const DriveStep* previous = nullptr;
+  for (const DriveStep& step : log.steps) {
+    const TPoint2D position = maps::position_of(step.true_pose);
+    if (!planned.points.empty()) cross.add(cross_track_error_m(planned, position));
+    along_track.add(along(step.reference.pose, step.true_pose));
+    heading.add(wrap_angle(step.true_pose.phi - step.reference.pose.phi));
+    if (maps::is_finite(step.estimated_pose)) {
+      estimate.add(maps::distance(position, maps::position_of(step.estimated_pose)));
+    }
+    speed.add(step.true_twist.vx - step.command.vx);
+    saturated += is_saturated(step.command, limits) ? 1 : 0;
+    m.max_speed_m_s = std::max(m.max_speed_m_s, std::abs(step.command.vx));
+    m.max_yaw_rate_rad_s = std::max(m.max_yaw_rate_rad_s, std::abs(step.command.omega));
+    if (previous) {
+      m.driven_length_m += maps::distance(maps::position_of(previous->true_pose), position);
+    }
+    previous = &step;
+  }
+
+  const DriveStep& last = log.steps.back();
+  m.duration_s = last.time_s - log.steps.front().time_s;
+  m.cross_track_rms_m = cross.rms();
+  m.cross_track_max_m = cross.max();
+  m.along_track_rms_m = along_track.rms();
+  m.along_track_max_m = along_track.max();
+  m.heading_rms_rad = heading.rms();
+  m.heading_max_rad = heading.max();
+  m.estimate_rms_m = estimate.rms();
+  m.speed_rms_error_m_s = speed.rms();
+  m.saturation_share = static_cast<double>(saturated) / static_cast<double>(log.steps.size());
+  m.final_position_error_m =
+      maps::distance(maps::position_of(last.true_pose), maps::position_of(goal));
+  if (goal_heading_given) {
+    m.final_heading_error_rad = std::abs(wrap_angle(last.true_pose.phi - goal.phi));
+  }
+  return m;
+}
+
+}  // namespace rovigo::control
