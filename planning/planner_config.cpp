@@ -1,0 +1,142 @@
+#include "planning/planner_config.h"
+
+#include "maps/error.h"
+
+namespace rovigo::planning {
+
+const char* to_string(PlannerKind kind) {
+  switch (kind) {
+    case PlannerKind::kAStar:
+      return "astar";
+    case PlannerKind::kRrtConnect:
+      return "rrtconnect";
+    case PlannerKind::kRrtStar:
+      return "rrtstar";
+  }
+  return "astar";
+}
+
+std::optional<PlannerKind> parse_planner_kind(const std::string& text) {
+  for (const auto kind : {PlannerKind::kAStar, PlannerKind::kRrtConnect, PlannerKind::kRrtStar}) {
+    if (text == to_string(kind)) return kind;
+  }
+  return std::nullopt;
+}
+
+void AStarConfig::describe(maps::SettingsVisitor& v) {
+  v.integer({.name = "connectivity",
+             .help = "Neighbours of a cell in the search: 4 or 8.",
+             .min = 4,
+             .max = 8},
+            connectivity);
+  v.real({.name = "soft_cost_weight",
+          .help = "How much longer a metre counts right beside an obstacle; 0 plans the shortest "
+                  "path.",
+          .min = 0.0,
+          .max = 50.0,
+          .advanced = false},
+         soft_cost_weight);
+  v.real({.name = "heuristic_weight",
+          .help = "Above 1 the search is faster and its cost at most this factor from the best.",
+          .min = 1.0,
+          .max = 10.0},
+         heuristic_weight);
+}
+
+void OmplConfig::describe(maps::SettingsVisitor& v) {
+  v.integer({.name = "rrtconnect_iterations",
+             .help = "Samples RRTConnect may draw before it gives up.",
+             .min = 1,
+             .max = 10000000},
+            rrtconnect_iterations);
+  v.integer({.name = "rrtstar_iterations",
+             .help = "Samples RRT* draws; more give a shorter path.",
+             .min = 1,
+             .max = 10000000},
+            rrtstar_iterations);
+  v.real({.name = "rrt_step_m", .help = "Longest edge of the tree.", .min = 0.05, .max = 100.0},
+         step_m);
+  v.real({.name = "rrt_goal_bias",
+          .help = "Share of RRT* samples drawn at the goal itself.",
+          .min = 0.0,
+          .max = 1.0},
+         goal_bias);
+}
+
+void SplineConfig::describe(maps::SettingsVisitor& v) {
+  v.flag({.name = "smooth_path",
+          .help = "Round the path with a cubic B-spline; otherwise drive straight pieces and turn "
+                  "in place between them."},
+         smooth);
+  v.real({.name = "max_curvature_1_m",
+          .help = "Tighter bends than this become turns in place.",
+          .min = 0.2,
+          .max = 50.0},
+         max_curvature_1_m);
+  v.real({.name = "spline_control_spacing_m",
+          .help = "Distance between the spline's control points where there is room.",
+          .min = 0.05,
+          .max = 5.0},
+         control_spacing_m);
+  v.real({.name = "path_sample_spacing_m",
+          .help = "Distance between the points of the path handed out.",
+          .min = 0.005,
+          .max = 0.2},
+         sample_spacing_m);
+}
+
+void TimingConfig::describe(maps::SettingsVisitor& v) {
+  v.real({.name = "speed_fraction",
+          .help = "Share of the rover's highest speed and turn rate that plans use.",
+          .min = 0.05,
+          .max = 1.0},
+         speed_fraction);
+  v.real({.name = "acceleration_fraction",
+          .help = "Share of the rover's highest accelerations that plans use.",
+          .min = 0.05,
+          .max = 1.0},
+         acceleration_fraction);
+  v.real({.name = "max_lateral_acceleration_m_s2",
+          .help = "Highest sideways acceleration in bends.",
+          .min = 0.01,
+          .max = 10.0},
+         max_lateral_acceleration);
+  v.real({.name = "turn_first_threshold_rad",
+          .help = "When the rover faces further away from the path than this, it turns in place "
+                  "first.",
+          .min = 0.01,
+          .max = 3.2},
+         turn_first_threshold_rad);
+  v.real({.name = "escape_speed_m_s",
+          .help = "Speed while leaving the band around obstacles.",
+          .min = 0.02,
+          .max = 0.5},
+         escape_speed_m_s);
+  v.real({.name = "trajectory_period_s",
+          .help = "Time between trajectory points.",
+          .min = 0.002,
+          .max = 0.05},
+         sample_period_s);
+}
+
+void PlannerConfig::describe(maps::SettingsVisitor& v) {
+  v.text({.name = "planner",
+          .help = "Search method.",
+          .choices = {"astar", "rrtconnect", "rrtstar"},
+          .advanced = false},
+         planner);
+  astar.describe(v);
+  ompl.describe(v);
+  spline.describe(v);
+  timing.describe(v);
+}
+
+void validate(const PlannerConfig& config) {
+  maps::validate(config);
+  if (config.astar.connectivity != 4 && config.astar.connectivity != 8) {
+    throw maps::InputError("connectivity = " + std::to_string(config.astar.connectivity) +
+                           " must be 4 or 8");
+  }
+}
+
+}  // namespace rovigo::planning

@@ -1,0 +1,66 @@
+#pragma once
+// Every setting of planning, with its unit, range and default.
+
+#include <optional>
+#include <string>
+
+#include "maps/settings.h"
+
+namespace rovigo::planning {
+
+enum class PlannerKind {
+  kAStar,       ///< soft-cost A* on the inflated grid
+  kRrtConnect,  ///< OMPL RRTConnect in the plane: any path, fast
+  kRrtStar,     ///< OMPL RRT* in the plane: shorter the more iterations it gets
+};
+
+/// `astar`, `rrtconnect`, `rrtstar`.
+const char* to_string(PlannerKind kind);
+std::optional<PlannerKind> parse_planner_kind(const std::string& text);
+
+struct AStarConfig {
+  int connectivity = 8;           ///< 4 or 8 neighbours
+  double soft_cost_weight = 3.0;  ///< a metre at the highest soft cost counts as 1 + this metres
+  double heuristic_weight = 1.0;  ///< above 1: at most this factor from optimal, and faster
+  void describe(maps::SettingsVisitor& v);
+};
+
+struct OmplConfig {
+  int rrtconnect_iterations = 200000;
+  int rrtstar_iterations = 5000;
+  double step_m = 1.0;  ///< longest edge of the tree
+  double goal_bias = 0.05;
+  void describe(maps::SettingsVisitor& v);
+};
+
+struct SplineConfig {
+  bool smooth = true;              ///< false: drive the shortened polyline, stop-turn-go
+  double max_curvature_1_m = 4.0;  ///< tighter bends become in-place turns
+  double control_spacing_m = 0.4;  ///< between control points before refinement
+  double sample_spacing_m = 0.02;  ///< of the points handed out
+  void describe(maps::SettingsVisitor& v);
+};
+
+struct TimingConfig {
+  double speed_fraction = 1.0;             ///< of the robot's highest speed and turn rate
+  double acceleration_fraction = 0.8;      ///< of its highest accelerations
+  double max_lateral_acceleration = 0.25;  ///< m/s^2, v^2 times curvature
+  double turn_first_threshold_rad = 0.5236;
+  double escape_speed_m_s = 0.15;
+  double sample_period_s = 0.02;
+  void describe(maps::SettingsVisitor& v);
+};
+
+struct PlannerConfig {
+  std::string planner = "astar";  ///< text form of PlannerKind
+  AStarConfig astar;
+  OmplConfig ompl;
+  SplineConfig spline;
+  TimingConfig timing;
+  void describe(maps::SettingsVisitor& v);
+};
+
+/// Ranges plus what ranges cannot say. Throws maps::InputError naming every bad field.
+void validate(const PlannerConfig& config);
+
+}  // namespace rovigo::planning
