@@ -1,0 +1,73 @@
+#include "control/command_limiter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rovigo::control {
+namespace {
+
+double slewed(double from, double to, double largest_change) {
+  return from + std::clamp(to - from, -largest_change, largest_change);
+}
+
+/// The rim speed is |v| + |omega| * half the track: what is left of it for the other of the two.
+double speed_left(double yaw_rate, const DriveLimits& limits) {
+  return std::max(0.0, limits.max_wheel_speed_m_s - std::abs(yaw_rate) * limits.track_width_m / 2);
+}
+
+double yaw_rate_left(double speed, const DriveLimits& limits) {
+  return std::max(0.0, 2 * (limits.max_wheel_speed_m_s - std::abs(speed)) / limits.track_width_m);
+}
+
+double outside_dead_zone(double wheel_speed, double dead_zone) {
+  const double size = std::abs(wheel_speed);
+  const double smallest = 0.1 * dead_zone;
+  if (size >= dead_zone || size < smallest) return wheel_speed;
+  return std::copysign(dead_zone, wheel_speed);
+}
+
+}  // namespace
+
+DriveLimits drive_limits(const ControlConfig& config, const maps::RobotModel& robot) {
+  DriveLimits limits;
+  limits.max_speed_m_s = std::min(robot.max_speed_m_s, config.max_wheel_speed_m_s);
+  limits.track_width_m = robot.track_width_m;
+  limits.max_wheel_speed_m_s = config.max_wheel_speed_m_s;
+  limits.max_yaw_rate_rad_s = std::min(robot.max_yaw_rate_rad_s, yaw_rate_left(0.0, limits));
+  limits.max_acceleration_m_s2 = robot.max_acceleration_m_s2;
+  limits.max_yaw_acceleration_rad_s2 = robot.max_yaw_acceleration_rad_s2;
+  return limits;
+}
+
+TTwist2D limited_command(const TTwist2D& desired, const TTwist2D& last, double dt_s,
+                         const DriveLimits& limits) {
+  constexpr double kLongestStepS = 0.1;
+  const double dt = dt_s > 0.0 ? std::min(dt_s, kLongestStepS) : 0.0;
+  const bool usable = std::isfinite(desired.vx) && std::isfinite(desired.omega);
+
+  const double yaw_rate_wanted = std::clamp(usable ? desired.omega : 0.0,
+                                            -limits.max_yaw_rate_rad_s, limits.max_yaw_rate_rad_s);
+  const double speed_wanted =
+      std::clamp(usable ? desired.vx : 0.0, 0.0,
+                 std::min(limits.max_speed_m_s, speed_left(yaw_rate_wanted, limits)));
+
+  double speed = slewed(last.vx, speed_wanted, limits.max_acceleration_m_s2 * dt);
+  if (speed > last.vx) {  // speeding up must not take the rim speed that turning uses now
+    speed = std::max(last.vx, std::min(speed, speed_left(last.omega, limits)));
+  }
+  double yaw_rate = slewed(last.omega, yaw_rate_wanted, limits.max_yaw_acceleration_rad_s2 * dt);
+  const double most = yaw_rate_left(speed, limits);
+  yaw_rate = std::clamp(yaw_rate, -most, most);
+  return {speed, 0.0, yaw_rate};
+}
+
+TTwist2D with_dead_zone_compensation(const TTwist2D& desired, double dead_zone_m_s,
+                                     double track_width_m) {
+  if (!(dead_zone_m_s > 0.0)) return desired;
+  const double half = track_width_m / 2;
+  const double left = outside_dead_zone(desired.vx - desired.omega * half, dead_zone_m_s);
+  const double right = outside_dead_zone(desired.vx + desired.omega * half, dead_zone_m_s);
+  return {(left + right) / 2, 0.0, (right - left) / track_width_m};
+}
+
+}  // namespace rovigo::control

@@ -1,0 +1,32 @@
+#pragma once
+// What may be asked of the drive: speed, turn rate, rim speed, and how fast they change.
+
+#include "control/control_config.h"
+#include "maps/geometry.h"
+#include "maps/robot_model.h"
+
+namespace rovigo::control {
+
+struct DriveLimits {
+  double max_speed_m_s = 0.4;
+  double max_yaw_rate_rad_s = 1.0;
+  double max_wheel_speed_m_s = 0.9;
+  double track_width_m = 0.358;
+  double max_acceleration_m_s2 = 0.5;
+  double max_yaw_acceleration_rad_s2 = 2.0;
+};
+
+DriveLimits drive_limits(const ControlConfig& config, const maps::RobotModel& robot);
+
+/// `desired` made drivable: forward only, within every limit, and reachable from `last` within
+/// `dt_s`. Where both cannot be had, turning comes before speed, so that the path is kept.
+/// Precondition: `last` is within the limits. A desire that is not finite counts as standstill.
+TTwist2D limited_command(const TTwist2D& desired, const TTwist2D& last, double dt_s,
+                         const DriveLimits& limits);
+
+/// Raises small wheel speeds to `dead_zone_m_s`, keeping their signs, so that the drive does not
+/// stall; speeds below a tenth of it are left alone, and so is standstill.
+TTwist2D with_dead_zone_compensation(const TTwist2D& desired, double dead_zone_m_s,
+                                     double track_width_m);
+
+}  // namespace rovigo::control
