@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "maps/map_file.h"
 #include "slam/rig.h"
@@ -33,6 +34,12 @@ class RecordingReader {
   /// damage, naming file and position. `progress()` is the share read so far, 0 .. 1.
   virtual mrpt::obs::CObservation::Ptr next() = 0;
   virtual double progress() const = 0;
+  /// Camera frames left out so far because an image was missing or damaged. One bad frame does not
+  /// lose a recording: the frame is counted here and named in `warnings()`.
+  virtual int skipped() const = 0;
+  /// One sentence for each thing a person should know about this recording, so far: frames left
+  /// out, a file cut short. At most a few dozen; what comes after is counted in the last one.
+  virtual std::vector<std::string> warnings() const = 0;
 };
 
 /// Opens a `.rawlog` or a TUM directory. Throws InputError for anything missing, empty or foreign.

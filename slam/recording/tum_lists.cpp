@@ -1,0 +1,135 @@
+#include "slam/recording/tum_lists.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "maps/error.h"
+#include "slam/recording/text_file.h"
+#include "slam/trajectory_file.h"
+
+namespace rovigo::slam {
+namespace {
+
+std::filesystem::path image_path(const TextFile& file, const TextLine& line, std::size_t index) {
+  const std::filesystem::path path(line.fields.at(index));
+  const bool leaves = std::any_of(path.begin(), path.end(),
+                                  [](const std::filesystem::path& part) { return part == ".."; });
+  if (path.is_absolute() || leaves) {
+    file.fail(line, "the image's path must stay inside the recording's folder");
+  }
+  return path;
+}
+
+/// `t` after `previous`; equal times are allowed only where `strictly` is false.
+void require_order(const TextFile& file, const TextLine& line, double t, double previous,
+                   bool strictly) {
+  if (t < previous || (strictly && t == previous)) {
+    file.fail(line, "the time does not come after the line before; sort the file by time");
+  }
+}
+
+bool names_depth(const std::filesystem::path& path) {
+  return path.string().find("depth") != std::string::npos;
+}
+
+}  // namespace
+
+std::vector<ImageEntry> read_image_list(const std::filesystem::path& path) {
+  const TextFile file(path);
+  std::vector<ImageEntry> entries;
+  entries.reserve(file.lines().size());
+  for (const TextLine& line : file.lines()) {
+    file.require_fields(line, 2, "time and path");
+    const double time_s = file.time(line, 0);
+    if (!entries.empty()) require_order(file, line, time_s, entries.back().time_s, true);
+    entries.push_back({time_s, image_path(file, line, 1)});
+  }
+  if (entries.empty()) throw maps::InputError(path.string() + ": no images are listed");
+  return entries;
+}
+
+std::vector<RgbdEntry> associate(const std::vector<ImageEntry>& color,
+                                 const std::vector<ImageEntry>& depth, double max_difference_s) {
+  using Candidate = std::tuple<double, std::size_t, std::size_t>;  // difference, colour, depth
+  constexpr std::size_t kMostPerImage = 8;  // bounds the work on hostile lists
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < color.size(); ++i) {
+    const double earliest = color[i].time_s - max_difference_s;
+    auto near = std::lower_bound(depth.begin(), depth.end(), earliest,
+                                 [](const ImageEntry& e, double t) { return e.time_s < t; });
+    for (std::size_t n = 0; near != depth.end() && n < kMostPerImage; ++near, ++n) {
+      const double difference = std::abs(near->time_s - color[i].time_s);
+      if (difference > max_difference_s) break;
+      candidates.emplace_back(difference, i, static_cast<std::size_t>(near - depth.begin()));
+    }
+  }
+  std::sort(candidates.begin(), candidates.end());
+  constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> depth_of(color.size(), kNone);
+  std::vector<bool> is_taken(depth.size(), false);
+  for (const auto& [difference, i, j] : candidates) {
+    if (depth_of[i] != kNone || is_taken[j]) continue;
+    depth_of[i] = j;
+    is_taken[j] = true;
+  }
+  std::vector<RgbdEntry> pairs;
+  for (std::size_t i = 0; i < color.size(); ++i) {
+    if (depth_of[i] == kNone) continue;
+    pairs.push_back({color[i].time_s, color[i].path, depth[depth_of[i]].path});
+  }
+  return pairs;
+}
+
+std::vector<RgbdEntry> read_associations(const std::filesystem::path& path) {
+  const TextFile file(path);
+  std::vector<RgbdEntry> pairs;
+  for (const TextLine& line : file.lines()) {
+    file.require_fields(line, 4, "time, colour image, time, depth image");
+    std::filesystem::path color = image_path(file, line, 1);
+    std::filesystem::path depth = image_path(file, line, 3);
+    double time_s = file.time(line, 0);
+    const double other_time_s = file.time(line, 2);
+    if (names_depth(color) && !names_depth(depth)) {
+      std::swap(color, depth);
+      time_s = other_time_s;
+    }
+    if (!pairs.empty()) require_order(file, line, time_s, pairs.back().time_s, true);
+    pairs.push_back({time_s, std::move(color), std::move(depth)});
+  }
+  if (pairs.empty()) throw maps::InputError(path.string() + ": no images are listed");
+  return pairs;
+}
+
+std::vector<ImuSample> read_imu(const std::filesystem::path& path) {
+  constexpr double kLargest = 1e4;  // rad/s and m/s^2; far beyond any sensor
+  const TextFile file(path);
+  std::vector<ImuSample> samples;
+  samples.reserve(file.lines().size());
+  for (const TextLine& line : file.lines()) {
+    file.require_fields(line, 7, "t wx wy wz ax ay az");
+    ImuSample sample;
+    sample.time_s = file.time(line, 0);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto column = static_cast<std::size_t>(axis);
+      sample.angular_rate_rad_s[axis] = file.number(line, 1 + column);
+      sample.specific_force_m_s2[axis] = file.number(line, 4 + column);
+    }
+    const double largest = std::max(sample.angular_rate_rad_s.cwiseAbs().maxCoeff(),
+                                    sample.specific_force_m_s2.cwiseAbs().maxCoeff());
+    if (largest > kLargest) file.fail(line, "a rate or force beyond 10000 is no measurement");
+    if (!samples.empty()) require_order(file, line, sample.time_s, samples.back().time_s, false);
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+std::vector<WheelSample> read_wheel_odometry(const std::filesystem::path& path) {
+  std::vector<WheelSample> samples;
+  for (const StampedPose& stamped : read_tum_trajectory(path)) {
+    samples.push_back({stamped.time_s, {stamped.pose.x(), stamped.pose.y(), stamped.pose.yaw()}});
+  }
+  return samples;
+}
+
+}  // namespace rovigo::slam
