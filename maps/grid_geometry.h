@@ -16,6 +16,11 @@ struct Cell {
   friend bool operator==(const Cell&, const Cell&) = default;
 };
 
+/// Larger grids are refused by every loader: distances in cells must fit 16 bits, and a claim of
+/// billions of cells in a damaged file must not eat the memory.
+inline constexpr int kMaxGridSide = 32766;
+inline constexpr std::size_t kMaxGridCells = std::size_t{1} << 28;
+
 /// An axis-aligned raster: `width` x `height` square cells, row-major from the lower-left corner.
 struct GridGeometry {
   double resolution_m = 0.05;

@@ -1,0 +1,143 @@
+#include "maps/inflation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "maps/error.h"
+#include "maps/gaussian_blur.h"
+#include "maps/squared_distance.h"
+
+namespace rovigo::maps {
+namespace {
+
+constexpr double kMaxReach = 100.0;  // metres; also cells for sigma: far beyond any rover
+
+void require(bool fine, const char* name, double value, double limit) {
+  if (fine) return;
+  throw InputError(std::string(name) + " = " + std::to_string(value) + " is outside [0, " +
+                   std::to_string(limit) + "]");
+}
+
+void check(const InflationConfig& config) {
+  const auto inside = [](double v, double limit) { return v >= 0.0 && v <= limit; };
+  require(inside(config.robot_radius_m, kMaxReach), "robot_radius_m", config.robot_radius_m,
+          kMaxReach);
+  require(inside(config.soft_cost_sigma_m, kMaxReach), "soft_cost_sigma_m",
+          config.soft_cost_sigma_m, kMaxReach);
+  require(inside(config.soft_cost_peak, Costmap::kMaxSoft), "soft_cost_peak", config.soft_cost_peak,
+          Costmap::kMaxSoft);
+}
+
+/// The cost of a cell as a function of its squared distance in half cells, tabulated up to where
+/// it has fallen to nothing.
+class CostOfDistance {
+ public:
+  CostOfDistance(const InflationConfig& config, double resolution_m)
+      : config_(config), half_cell_m_(0.5 * resolution_m) {
+    double reach_m = config.robot_radius_m;
+    if (config.soft_cost_sigma_m > 0.0 && config.soft_cost_peak > 0) {
+      // Beyond this the Gaussian rounds to 0.
+      reach_m += config.soft_cost_sigma_m * std::sqrt(2.0 * std::log(2.0 * config.soft_cost_peak));
+    }
+    reach_half_cells_ = reach_m / half_cell_m_;
+    const double entries = std::floor(reach_half_cells_ * reach_half_cells_) + 1.0;
+    table_.resize(static_cast<std::size_t>(std::min(entries, kMaxEntries)));
+    for (std::size_t i = 0; i < table_.size(); ++i) {
+      table_[i] = compute(static_cast<std::int64_t>(i));
+    }
+  }
+
+  double reach_half_cells() const { return reach_half_cells_; }
+
+  std::uint8_t operator()(std::int64_t squared_half_cells) const {
+    if (static_cast<std::uint64_t>(squared_half_cells) < table_.size()) {
+      return table_[static_cast<std::size_t>(squared_half_cells)];
+    }
+    return table_.size() < static_cast<std::size_t>(kMaxEntries) ? Costmap::kFree
+                                                                 : compute(squared_half_cells);
+  }
+
+ private:
+  static constexpr double kMaxEntries = 1 << 20;
+
+  std::uint8_t compute(std::int64_t squared_half_cells) const {
+    if (squared_half_cells == 0) return Costmap::kLethal;  // occupied itself
+    const double distance_m = half_cell_m_ * std::sqrt(static_cast<double>(squared_half_cells));
+    const double beyond_m = distance_m - config_.robot_radius_m;
+    // A distance equal to the radius is allowed; rounding must not decide it.
+    if (beyond_m < -1e-9 * config_.robot_radius_m) return Costmap::kLethal;
+    if (config_.soft_cost_sigma_m <= 0.0) return Costmap::kFree;
+    const double sigmas = std::max(beyond_m, 0.0) / config_.soft_cost_sigma_m;
+    return static_cast<std::uint8_t>(
+        std::lround(config_.soft_cost_peak * std::exp(-0.5 * sigmas * sigmas)));
+  }
+
+  const InflationConfig& config_;
+  double half_cell_m_;
+  double reach_half_cells_ = 0.0;
+  std::vector<std::uint8_t> table_;
+};
+
+}  // namespace
+
+void InflationConfig::describe(SettingsVisitor& v) {
+  v.real({.name = "soft_cost_sigma_m",
+          .help = "How far beyond robot_radius_m paths shun obstacles (sigma of a Gaussian of the "
+                  "distance); 0 switches it off.",
+          .min = 0.0,
+          .max = 5.0},
+         soft_cost_sigma_m);
+  v.integer({.name = "soft_cost_peak",
+             .help = "Soft cost right at robot_radius_m.",
+             .min = 0,
+             .max = Costmap::kMaxSoft},
+            soft_cost_peak);
+  int mode = static_cast<int>(map_mode);
+  v.integer({.name = "map_mode",
+             .help = "0: only known-free ground is passable; 1: unknown ground too; 2: everything.",
+             .min = 0,
+             .max = 2,
+             .advanced = false},
+            mode);
+  map_mode = static_cast<MapMode>(mode);
+}
+
+Costmap inflate_safe(const OccupancyGrid& grid, const InflationConfig& config) {
+  check(config);
+  Costmap costmap(grid.geometry, Costmap::kFree);
+  if (config.map_mode == MapMode::kEverything) return costmap;
+  const CostOfDistance cost(config, grid.geometry.resolution_m);
+  SquaredDistanceTransform transform(grid, cost.reach_half_cells());
+  const bool keep_unknown = config.map_mode == MapMode::kKnownFree;
+  const std::int8_t* cell = grid.cells.data();
+  std::uint8_t* out = costmap.cells.data();
+  for (int y = 0; y < grid.geometry.height; ++y) {
+    for (const std::int64_t squared : transform.row(y)) {
+      const std::uint8_t value = cost(squared);
+      const bool unknown =
+          keep_unknown && OccupancyGrid::is_unknown(*cell) && value != Costmap::kLethal;
+      *out++ = unknown ? Costmap::kUnknown : value;
+      ++cell;
+    }
+  }
+  return costmap;
+}
+
+Costmap inflate_reference(const OccupancyGrid& grid, double sigma_cells, MapMode map_mode) {
+  require(sigma_cells >= 0.0 && sigma_cells <= kMaxReach, "sigma_cells", sigma_cells, kMaxReach);
+  Costmap costmap(grid.geometry, Costmap::kFree);
+  if (map_mode == MapMode::kEverything) return costmap;
+  std::vector<std::uint8_t> image(grid.cells.size());
+  const bool unknown_blocks = map_mode == MapMode::kKnownFree;
+  std::transform(grid.cells.begin(), grid.cells.end(), image.begin(), [&](std::int8_t value) {
+    return static_cast<std::uint8_t>(value > 0 || (unknown_blocks && value < 0));
+  });
+  const std::vector<std::uint8_t> blurred =
+      blur_like_scipy(image, grid.geometry.width, grid.geometry.height, sigma_cells);
+  std::transform(blurred.begin(), blurred.end(), costmap.cells.begin(),
+                 [](std::uint8_t value) { return value ? Costmap::kLethal : Costmap::kFree; });
+  return costmap;
+}
+
+}  // namespace rovigo::maps
