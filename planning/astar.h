@@ -1,0 +1,68 @@
+#pragma once
+// A* on a grid of moves, with soft costs; exact, deterministic, and lean enough for long queries.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "planning/search_grid.h"
+
+namespace rovigo::planning {
+
+/// Weights of one search (see AStarConfig for the settings a person sees).
+struct SearchWeights {
+  double soft_cost = 0.0;  ///< a step at soft cost Costmap::kMaxSoft counts 1 + this times
+  double heuristic = 1.0;  ///< 1: optimal; above: at most this factor from it
+};
+
+struct GridSearchResult {
+  bool found = false;
+  std::vector<maps::Cell> cells;  ///< from start to goal, both included; empty when not found
+  double cost_m = 0.0;            ///< length weighted by soft costs, metres
+  double length_m = 0.0;          ///< of the polyline through the cell centres, metres
+  std::size_t expanded_cells = 0;
+};
+
+/// Cost of a move between neighbours: its length times the mean of both cells' price, where a
+/// cell's price is 1 + soft_cost * cost / kMaxSoft. With that the cost of a path is the trapezoid
+/// rule for the integral of the price along it, and the same both ways.
+///
+/// Costs are integers in which a straight and a diagonal step stand in the ratio of a convergent of
+/// sqrt 2, so that sums are exact, order cannot depend on rounding, and 32 bits suffice. The open
+/// list is a ring of buckets a fraction of a step wide; inside a bucket the last in is the first
+/// out, and a cell whose cost improves is put in again, which keeps the result exact.
+class GridSearch {
+ public:
+  /// The cheapest way from start to goal. Cells that are outside or impassable are not found.
+  GridSearchResult find(const SearchGrid& grid, maps::Cell start, maps::Cell goal,
+                        const SearchWeights& weights);
+
+  /// Of the cells reachable from `start`, the one whose centre is nearest to `target` (the first in
+  /// row order among equals); nullopt when start is impassable.
+  std::optional<maps::Cell> nearest_reachable(const SearchGrid& grid, maps::Cell start,
+                                              const TPoint2D& target);
+
+ private:
+  struct Entry {
+    std::uint32_t cell;
+    std::uint32_t cost;
+  };
+  struct Scale {
+    std::uint32_t straight;
+    std::uint32_t diagonal;
+  };
+  struct Query;
+
+  void prepare(const SearchGrid& grid);
+  void forget();
+  template <bool soft>
+  bool run(Query& query);
+  template <bool soft>
+  void collect_path(const Query& query, GridSearchResult& result) const;
+
+  std::vector<std::uint32_t> cost_to_come_;  ///< kUnreached except where a query has been
+  std::vector<std::uint32_t> touched_;       ///< cells to clear before the next query
+  std::vector<std::vector<Entry>> buckets_;
+};
+
+}  // namespace rovigo::planning
