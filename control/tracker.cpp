@@ -1,6 +1,36 @@
 #include "control/tracker.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "control/approach.h"
+#include "control/command_limiter.h"
+#include "control/path_follower.h"
+#include "control/pose_predictor.h"
+#include "control/progress_monitor.h"
+#include "control/turn_gain.h"
+#include "control/watchdog.h"
+
 namespace rovigo::control {
+namespace {
+
+using maps::wrap_angle;
+
+constexpr double kStandstillS = 0.3;        ///< at rest this long before "reached" is said
+constexpr int kMostApproaches = 3;          ///< second tries at a missed goal
+constexpr double kLongestApproachM = 0.30;  ///< a goal missed by more needs a new plan
+
+enum class PoseUse {
+  kDrive,   ///< steer by it
+  kStop,    ///< it says that nobody knows where the rover is
+  kIgnore,  ///< as if it had not come: old, repeated, not finite
+};
+
+bool at_rest(const TTwist2D& twist) {
+  return std::abs(twist.vx) < 0.005 && std::abs(twist.omega) < 0.02;
+}
+
+}  // namespace
 
 const char* to_string(TrackStatus status) {
   switch (status) {
@@ -16,6 +46,207 @@ const char* to_string(TrackStatus status) {
       return "timed_out";
   }
   return "unknown";
+}
+
+struct TrajectoryTracker::Impl {
+  Impl(const ControlConfig& config_in, const maps::RobotModel& robot,
+       planning::Trajectory trajectory)
+      : config(config_in),
+        limits(drive_limits(config_in, robot)),
+        time_limit_s(config_in.timeout_factor * trajectory.duration_s() +
+                     config_in.timeout_extra_s),
+        follower(config_in, limits, std::move(trajectory)),
+        goal(follower.goal()),
+        predictor(config_in.drive_lag_s, config_in.command_delay_s),
+        watchdog(config_in.watchdog_s),
+        monitor(config_in.stagnation_time_s) {}
+
+  TrackerOutput step(double now_s, const PoseInput& pose);
+
+  PoseUse judge(double now_s, const PoseInput& pose) const;
+  void take_pose(double now_s, const PoseInput& pose);
+  void correct_estimate(const PoseInput& pose);
+  TTwist2D follow(double now_s, double dt_s);
+  TTwist2D settle(double now_s, const TPose2D& estimate);
+  void watch_time(double now_s);
+  TrackerOutput emit(const TTwist2D& command);
+
+  ControlConfig config;
+  DriveLimits limits;
+  double time_limit_s;
+  PathFollower follower;
+  TPose2D goal;
+  PosePredictor predictor;
+  TurnGainEstimator turn_gain;
+  Watchdog watchdog;
+  ProgressMonitor monitor;
+
+  TrackStatus status = TrackStatus::kRunning;
+  bool started = false;
+  double start_s = 0.0;
+  double now_last_s = 0.0;
+  double last_usable_s = 0.0;  ///< arrival of the last usable pose, or the start
+  double newest_pose_s = 0.0;
+  bool have_pose = false;
+  bool halted = true;  ///< standing or slowing down until a usable pose comes
+  double speed_cap_m_s = 0.0;
+  TTwist2D last_command;
+  double standing_since_s = -1.0;  ///< at the end of the trajectory; negative: not there
+  int approaches = 0;
+  double heading_error_rad = 0.0;
+  double cross_track_error_m = 0.0;
+};
+
+TrackerOutput TrajectoryTracker::Impl::step(double now_s, const PoseInput& pose) {
+  if (status != TrackStatus::kRunning || !std::isfinite(now_s)) return emit({});
+  if (!started) {
+    started = true;
+    start_s = now_last_s = last_usable_s = now_s;
+  }
+  const double dt = now_s - now_last_s;
+  now_last_s = std::max(now_s, now_last_s);
+  predictor.advance(now_s);
+  take_pose(now_s, pose);
+  watch_time(now_s);
+
+  if (status != TrackStatus::kRunning || watchdog.expired(now_s)) {
+    halted = true;
+    monitor.restart();
+    return emit({});  // at once: nobody knows what lies ahead
+  }
+  const TTwist2D wanted = halted ? TTwist2D() : follow(now_s, dt);
+  if (status != TrackStatus::kRunning) return emit({});
+  return emit(limited_command(wanted, last_command, dt, limits));
+}
+
+PoseUse TrajectoryTracker::Impl::judge(double now_s, const PoseInput& pose) const {
+  constexpr double kClockSlackS = 0.05;  // poses may be stamped at the end of the present step
+  const double age = now_s - pose.time_s;
+  if (!maps::is_finite(pose.map_from_base) || !(age <= config.max_pose_age_s) ||
+      !(age >= -kClockSlackS)) {
+    return PoseUse::kIgnore;
+  }
+  if (have_pose && pose.time_s <= newest_pose_s) return PoseUse::kIgnore;
+  if (pose.quality == PoseQuality::kGood) return PoseUse::kDrive;
+  const bool good_enough = pose.quality == PoseQuality::kDoubtful &&
+                           pose.sigma_position_m <= config.max_doubtful_sigma_m;
+  return good_enough ? PoseUse::kDrive : PoseUse::kStop;
+}
+
+void TrajectoryTracker::Impl::take_pose(double now_s, const PoseInput& pose) {
+  const PoseUse use = judge(now_s, pose);
+  if (use == PoseUse::kIgnore) return;
+  have_pose = true;
+  newest_pose_s = pose.time_s;
+  if (use == PoseUse::kStop) {
+    halted = true;
+    monitor.restart();
+    turn_gain.interrupt();
+    return;
+  }
+  watchdog.feed(now_s);
+  last_usable_s = now_s;
+  speed_cap_m_s = pose.quality == PoseQuality::kGood
+                      ? limits.max_speed_m_s
+                      : std::min(limits.max_speed_m_s, config.doubtful_speed_m_s);
+  if (halted) {
+    halted = false;
+    turn_gain.interrupt();
+    predictor.reset(pose.time_s, pose.map_from_base);
+    follower.resume(predictor.at(now_s + config.command_delay_s), last_command.vx);
+  } else {
+    correct_estimate(pose);
+  }
+}
+
+void TrajectoryTracker::Impl::correct_estimate(const PoseInput& pose) {
+  constexpr double kJumpM = 0.3, kJumpRad = 0.5;  // relocalised: take it as it is
+  constexpr double kLeastShare = 0.3;
+  const TPose2D expected = predictor.at(pose.time_s);
+  const bool jumped =
+      maps::distance(maps::position_of(expected), maps::position_of(pose.map_from_base)) > kJumpM ||
+      std::abs(wrap_angle(pose.map_from_base.phi - expected.phi)) > kJumpRad;
+  const double sigma = pose.sigma_position_m > 0.0 ? pose.sigma_position_m : 0.0;
+  const double share =
+      std::max(kLeastShare, config.pose_noise_scale_m / (config.pose_noise_scale_m + sigma));
+  if (jumped) turn_gain.interrupt();
+  predictor.correct(pose.time_s, pose.map_from_base, jumped ? 1.0 : share);
+  if (config.adapt_turn_gain && pose.quality == PoseQuality::kGood) {
+    turn_gain.add(pose.time_s, pose.map_from_base.phi, predictor);
+    predictor.set_turn_gain(turn_gain.gain());
+  }
+}
+
+TTwist2D TrajectoryTracker::Impl::follow(double now_s, double dt_s) {
+  FollowInput input;
+  input.pose = predictor.at(now_s + config.command_delay_s);
+  input.twist = predictor.twist();
+  input.dt_s = dt_s;
+  input.speed_cap_m_s = speed_cap_m_s;
+  input.turn_gain = turn_gain.gain();
+  const FollowOutput out = follower.step(input);
+  heading_error_rad = out.heading_error_rad;
+  cross_track_error_m = out.cross_track_error_m;
+  if (out.finished) return settle(now_s, input.pose);
+  standing_since_s = -1.0;
+  if (monitor.stagnated(now_s, {follower.reference_time_s(), follower.arc_m(),
+                                std::abs(out.heading_error_rad)})) {
+    status = TrackStatus::kNoProgress;
+  }
+  return with_dead_zone_compensation(out.wanted, config.dead_zone_speed_m_s, limits.track_width_m);
+}
+
+/// The trajectory is done: stand still, then look whether this is the goal. A goal that was missed
+/// is approached anew by a small plan of turn, straight, turn; never by reversing.
+TTwist2D TrajectoryTracker::Impl::settle(double now_s, const TPose2D& estimate) {
+  if (!at_rest(predictor.twist()) || !at_rest(last_command))
+    standing_since_s = -1.0;
+  else if (standing_since_s < 0.0)
+    standing_since_s = now_s;
+  if (standing_since_s < 0.0 || now_s - standing_since_s < kStandstillS) return {};
+
+  const double missed = maps::distance(maps::position_of(estimate), maps::position_of(goal));
+  const double turned = std::abs(wrap_angle(goal.phi - estimate.phi));
+  if (missed <= config.goal_tolerance_m && turned <= config.goal_heading_tolerance_rad) {
+    status = TrackStatus::kReached;
+  } else if (approaches < kMostApproaches && missed <= kLongestApproachM) {
+    ++approaches;
+    standing_since_s = -1.0;
+    monitor.restart();
+    follower = PathFollower(config, limits,
+                            approach_trajectory(estimate, goal, config.doubtful_speed_m_s,
+                                                config.goal_tolerance_m / 2, limits));
+  } else {
+    status = TrackStatus::kNoProgress;
+  }
+  return {};
+}
+
+void TrajectoryTracker::Impl::watch_time(double now_s) {
+  if (now_s - last_usable_s > config.pose_patience_s) status = TrackStatus::kPoseLost;
+  if (now_s - start_s > time_limit_s) status = TrackStatus::kTimedOut;
+}
+
+TrackerOutput TrajectoryTracker::Impl::emit(const TTwist2D& command) {
+  last_command = command;
+  predictor.set_command(command);
+  TrackerOutput out;
+  out.command = command;
+  out.status = status;
+  out.reference = follower.reference();
+  out.heading_error_rad = heading_error_rad;
+  out.cross_track_error_m = cross_track_error_m;
+  return out;
+}
+
+TrajectoryTracker::TrajectoryTracker(const ControlConfig& config, const maps::RobotModel& robot,
+                                     planning::Trajectory trajectory)
+    : impl_(std::make_unique<Impl>(config, robot, std::move(trajectory))) {}
+
+TrajectoryTracker::~TrajectoryTracker() = default;
+
+TrackerOutput TrajectoryTracker::step(double now_s, const PoseInput& pose) {
+  return impl_->step(now_s, pose);
 }
 
 }  // namespace rovigo::control

@@ -1,0 +1,83 @@
+#include "control/pose_predictor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rovigo::control {
+namespace {
+
+/// `pose` after moving with `twist` for `dt_s`, along the chord of the arc.
+TPose2D moved(const TPose2D& pose, const TTwist2D& twist, double dt_s) {
+  const double turn = twist.omega * dt_s;
+  const double heading = pose.phi + turn / 2;
+  const double half = turn / 2;
+  const double chord = std::abs(half) > 1e-9 ? std::sin(half) / half : 1.0;
+  const double length = twist.vx * dt_s * chord;
+  return {pose.x + length * std::cos(heading), pose.y + length * std::sin(heading),
+          maps::wrap_angle(pose.phi + turn)};
+}
+
+}  // namespace
+
+void PosePredictor::advance(double now_s) {
+  if (!started_) {
+    started_ = true;
+    now_s_ = now_s;
+    return;
+  }
+  const double dt = now_s - now_s_;
+  if (!(dt > 0.0)) return;
+  // First-order lag, solved exactly over the interval: its mean and its end value.
+  const double decay = lag_s_ > 0.0 ? std::exp(-dt / lag_s_) : 0.0;
+  const double mean_share = lag_s_ > 0.0 ? lag_s_ / dt * (1.0 - decay) : 0.0;
+  const TTwist2D gap(modelled_.vx - command_.vx, 0.0, modelled_.omega - command_.omega);
+  motions_.push_back(
+      {now_s_ + delay_s_,
+       now_s + delay_s_,
+       {command_.vx + gap.vx * mean_share, 0.0, command_.omega + gap.omega * mean_share}});
+  modelled_ = {command_.vx + gap.vx * decay, 0.0, command_.omega + gap.omega * decay};
+  now_s_ = now_s;
+  while (!motions_.empty() && motions_.front().to_s < now_s_ - kMemoryS) motions_.pop_front();
+}
+
+void PosePredictor::reset(double time_s, const TPose2D& pose) {
+  anchor_time_s_ = time_s;
+  anchor_ = pose;
+}
+
+void PosePredictor::correct(double time_s, const TPose2D& pose, double share) {
+  const TPose2D predicted = at(time_s);
+  reset(time_s,
+        {predicted.x + share * (pose.x - predicted.x), predicted.y + share * (pose.y - predicted.y),
+         maps::wrap_angle(predicted.phi + share * maps::wrap_angle(pose.phi - predicted.phi))});
+}
+
+TPose2D PosePredictor::at(double time_s) const {
+  TPose2D pose = anchor_;
+  double reached = anchor_time_s_;
+  for (const Motion& m : motions_) {
+    const double from = std::max(m.from_s, anchor_time_s_);
+    const double to = std::min(m.to_s, time_s);
+    if (to <= from) continue;
+    pose = moved(pose, {m.twist.vx, 0.0, m.twist.omega * turn_gain_}, to - from);
+    reached = to;
+  }
+  if (!motions_.empty() && reached < time_s && time_s > motions_.back().to_s) {
+    const double from = std::max(reached, motions_.back().to_s);
+    pose = moved(pose, twist(), std::min(time_s - from, kMemoryS));
+  }
+  return pose;
+}
+
+TTwist2D PosePredictor::twist() const { return {modelled_.vx, 0.0, modelled_.omega * turn_gain_}; }
+
+double PosePredictor::asked_turn(double from_s, double to_s) const {
+  double turn = 0.0;
+  for (const Motion& m : motions_) {
+    const double overlap = std::min(m.to_s, to_s) - std::max(m.from_s, from_s);
+    if (overlap > 0.0) turn += m.twist.omega * overlap;
+  }
+  return turn;
+}
+
+}  // namespace rovigo::control

@@ -1,0 +1,58 @@
+#pragma once
+// Where the rover is now, from a pose that is old and the commands given since.
+
+#include <deque>
+
+#include "maps/geometry.h"
+
+namespace rovigo::control {
+
+/// Dead reckoning on commands: the drive is taken as a first-order lag behind a dead time, with a
+/// gain on turns (the wheels scrub). Poses correct it at the time they held.
+class PosePredictor {
+ public:
+  PosePredictor(double drive_lag_s, double command_delay_s)
+      : lag_s_(drive_lag_s), delay_s_(command_delay_s) {}
+
+  /// Brings the model up to `now_s` under the present command. Time never runs backwards.
+  void advance(double now_s);
+  /// The command in force from the last advance() on.
+  void set_command(const TTwist2D& command) { command_ = command; }
+
+  /// Takes `pose` as the truth at `time_s`.
+  void reset(double time_s, const TPose2D& pose);
+  /// Moves the estimate at `time_s` by `share` (0..1) of its difference to `pose`.
+  void correct(double time_s, const TPose2D& pose, double share);
+
+  /// The estimate at `time_s`; beyond the modelled time the drive is taken to keep its twist.
+  TPose2D at(double time_s) const;
+  /// The modelled twist at the end of the modelled time, turn gain included.
+  TTwist2D twist() const;
+  /// Turn that the commands asked for between two times, without the turn gain, radians.
+  double asked_turn(double from_s, double to_s) const;
+
+  void set_turn_gain(double gain) { turn_gain_ = gain; }
+  double anchor_time_s() const { return anchor_time_s_; }
+
+ private:
+  /// Mean modelled twist between two times.
+  struct Motion {
+    double from_s;
+    double to_s;
+    TTwist2D twist;
+  };
+  static constexpr double kMemoryS = 2.0;
+
+  double lag_s_;
+  double delay_s_;
+  double turn_gain_ = 1.0;
+  bool started_ = false;
+  double now_s_ = 0.0;
+  TTwist2D command_;
+  TTwist2D modelled_;  ///< at now_s_ + delay_s_
+  std::deque<Motion> motions_;
+  double anchor_time_s_ = 0.0;
+  TPose2D anchor_;
+};
+
+}  // namespace rovigo::control
