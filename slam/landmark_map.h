@@ -1,0 +1,96 @@
+#pragma once
+// The map slam works on: keyframes, landmarks, and which saw which.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "maps/map_file.h"
+#include "slam/features.h"
+#include "slam/se3.h"
+
+namespace rovigo::slam {
+
+struct Keyframe {
+  int id = 0;
+  double time_s = 0.0;
+  Se3 map_from_base;
+  FeatureSet features;
+  std::vector<int> landmark_of;  ///< per feature; -1: none
+  maps::Blob color_jpeg;
+  maps::Blob depth_png;
+};
+
+struct Sighting {
+  int keyframe = 0;
+  int feature = 0;
+};
+
+struct Landmark {
+  Eigen::Vector3d position_map = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+  Descriptor descriptor{};                                  ///< as last seen by a keyframe
+  Eigen::Vector3d direction_map = Eigen::Vector3d::Zero();  ///< unit, from it to that camera
+  double distance_m = 0.0;                                  ///< to that camera
+  int octave = 0;                                           ///< in that view
+  std::vector<Sighting> sightings;
+  int predicted = 0;  ///< frames that should have seen it
+  int tracked = 0;    ///< frames that did
+  bool alive = true;
+};
+
+/// How measurements of one feature spread: pixel and depth noise.
+struct MeasurementNoise {
+  double pixel_sigma = 1.0;
+  double depth_sigma_m = 0.01;
+};
+MeasurementNoise noise_of(const Feature& feature, const SlamConfig& config);
+
+class LandmarkMap {
+ public:
+  LandmarkMap(const SlamConfig& config, const CameraModel& camera, const Se3& base_from_camera);
+
+  const std::vector<Keyframe>& keyframes() const { return keyframes_; }
+  const std::vector<Landmark>& landmarks() const { return landmarks_; }
+  Keyframe& keyframe(int id) { return keyframes_[static_cast<std::size_t>(id)]; }
+  const Keyframe& keyframe(int id) const { return keyframes_[static_cast<std::size_t>(id)]; }
+  Landmark& landmark(int id) { return landmarks_[static_cast<std::size_t>(id)]; }
+  const Landmark& landmark(int id) const { return landmarks_[static_cast<std::size_t>(id)]; }
+  const CameraModel& camera() const { return camera_; }
+  const Se3& base_from_camera() const { return base_from_camera_; }
+  const SlamConfig& config() const { return config_; }
+
+  /// Stores a view. Features matched to landmarks (`landmark_of`) sharpen those; the other
+  /// features with depth become new landmarks. Returns the keyframe's id.
+  int add_keyframe(Keyframe keyframe);
+
+  /// Everything `from` was seen as becomes a sighting of `into`; `from` is gone.
+  void merge_landmarks(int from, int into);
+
+  /// Keyframes that see at least `min_shared` of this one's landmarks, most shared first.
+  std::vector<std::pair<int, int>> covisible(int keyframe, int min_shared) const;
+
+  /// Keyframes ranked by how many of these landmarks they see.
+  std::vector<std::pair<int, int>> observers(const std::vector<int>& landmarks) const;
+
+  /// Living landmarks seen by any of these keyframes, each once, in ascending order.
+  std::vector<int> landmarks_of(const std::vector<int>& keyframes) const;
+
+  /// New poses for all keyframes; landmarks follow the keyframe that saw them first.
+  void move_keyframes(const std::vector<Se3>& map_from_base);
+
+  /// Landmarks that frames fail to find again are taken out.
+  void cull(const std::vector<int>& candidates);
+
+ private:
+  void sight(int landmark, int keyframe, int feature);
+  Eigen::Vector3d measured_point(const Keyframe& k, int feature, Eigen::Matrix3d& covariance) const;
+
+  SlamConfig config_;
+  CameraModel camera_;
+  Se3 base_from_camera_;
+  std::vector<Keyframe> keyframes_;
+  std::vector<Landmark> landmarks_;
+};
+
+}  // namespace rovigo::slam
