@@ -16,8 +16,9 @@ using rovigo::test::test_data;
 using rovigo::test::write_text;
 using ::testing::HasSubstr;
 
-const char* const kRoomYaml = "image: room.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\n"
-                              "occupied_thresh: 0.65\nfree_thresh: 0.196\n";
+const char* const kRoomYaml =
+    "image: room.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\n"
+    "occupied_thresh: 0.65\nfree_thresh: 0.196\n";
 
 /// An 8 m x 4 m room with a wall at x = 4 m that has no door; the left half holds a pillar.
 void write_walled_room(const std::string& folder) {
@@ -47,9 +48,19 @@ void expect_one_sentence(const ProcessResult& r, int exit_code) {
 }
 
 TEST(CommandLine, EveryCommandHasHelp) {
-  const std::vector<std::vector<std::string>> commands{
-      {}, {"record"}, {"map"}, {"localize"}, {"info"}, {"plan"}, {"drive"}, {"export"}, {"import"},
-      {"evaluate"}, {"evaluate", "trajectory"}, {"evaluate", "map"}, {"config"}};
+  const std::vector<std::vector<std::string>> commands{{},
+                                                       {"record"},
+                                                       {"map"},
+                                                       {"localize"},
+                                                       {"info"},
+                                                       {"plan"},
+                                                       {"drive"},
+                                                       {"export"},
+                                                       {"import"},
+                                                       {"evaluate"},
+                                                       {"evaluate", "trajectory"},
+                                                       {"evaluate", "map"},
+                                                       {"config"}};
   for (auto command : commands) {
     command.push_back("--help");
     const ProcessResult r = run_rovigo(command);
@@ -60,8 +71,13 @@ TEST(CommandLine, EveryCommandHasHelp) {
 }
 
 TEST(CommandLine, BadUsageExitsWithTwoAndSaysWhy) {
-  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
-           {}, {"fly"}, {"plan"}, {"plan", "a.rovigo", "--speed", "9"}, {"map", "x.rawlog"}, {"config", "--set"}}) {
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{},
+                                             {"fly"},
+                                             {"plan"},
+                                             {"plan", "a.rovigo", "--speed", "9"},
+                                             {"map", "x.rawlog"},
+                                             {"config", "--set"}}) {
     expect_one_sentence(run_rovigo(words), 2);
   }
 }
@@ -83,12 +99,14 @@ TEST(CommandLine, MissingEmptyTruncatedAndForeignFilesAreRefusedByEveryCommandTh
   write_text(folder / "empty.rawlog", "");
   write_text(folder / "foreign.rawlog", "this is no recording\n");
   write_text(folder / "broken.yaml", "image: [");
-  for (const std::string name : {"missing.rovigo", "empty.rovigo", "foreign.rovigo", "half.rovigo", "broken.yaml"}) {
+  for (const std::string name :
+       {"missing.rovigo", "empty.rovigo", "foreign.rovigo", "half.rovigo", "broken.yaml"}) {
     SCOPED_TRACE(name);
     const std::string file = folder / name;
-    for (const auto& r : {run_rovigo({"info", file}), run_rovigo({"plan", file, "--start", "0,0", "--goal", "1,1"}),
-                          run_rovigo({"drive", file, "--start", "0,0", "--goal", "1,1"}),
-                          run_rovigo({"export", file, "--format", "ros", "-o", folder / "out.yaml"})}) {
+    for (const auto& r :
+         {run_rovigo({"info", file}), run_rovigo({"plan", file, "--start", "0,0", "--goal", "1,1"}),
+          run_rovigo({"drive", file, "--start", "0,0", "--goal", "1,1"}),
+          run_rovigo({"export", file, "--format", "ros", "-o", folder / "out.yaml"})}) {
       expect_one_sentence(r, 2);
       EXPECT_THAT(r.err, HasSubstr(name));
     }
@@ -96,7 +114,8 @@ TEST(CommandLine, MissingEmptyTruncatedAndForeignFilesAreRefusedByEveryCommandTh
   for (const std::string name : {"missing.rawlog", "empty.rawlog", "foreign.rawlog"}) {
     SCOPED_TRACE(name);
     const std::string file = folder / name;
-    for (const auto& r : {run_rovigo({"info", file}), run_rovigo({"map", file, "-o", folder / "out.rovigo"})}) {
+    for (const auto& r :
+         {run_rovigo({"info", file}), run_rovigo({"map", file, "-o", folder / "out.rovigo"})}) {
       expect_one_sentence(r, 2);
       EXPECT_THAT(r.err, HasSubstr(name));
     }
@@ -126,7 +145,8 @@ TEST(CommandLine, RefusedGoalsCarryTheirCodes) {
 TEST(CommandLine, ARefusalNamesTheNearestReachableGoal) {
   const TemporaryFolder folder;
   write_walled_room(folder.path().string());
-  const ProcessResult r = run_rovigo({"plan", folder / "room.yaml", "--start", "1,2", "--goal", "6,2", "--json"});
+  const ProcessResult r =
+      run_rovigo({"plan", folder / "room.yaml", "--start", "1,2", "--goal", "6,2", "--json"});
   const auto nearest = nlohmann::json::parse(r.out).at("nearest_reachable_goal");
   ASSERT_EQ(nearest.size(), 2u);
   EXPECT_LT(nearest[0].get<double>(), 3.70);  // left of the wall, the rover's radius away
@@ -142,7 +162,8 @@ TEST(CommandLine, UnknownAndOutOfRangeSettingsAreNamedWithTheNearestValidKey) {
   EXPECT_THAT(r.err, HasSubstr("robot.max_speed_m_s"));
   EXPECT_THAT(r.err, HasSubstr("line 3"));
   EXPECT_THAT(r.err, HasSubstr("99"));
-  EXPECT_THAT(run_rovigo({"config", "--set", "robot.max_speed_m_s=fast"}).err, HasSubstr("not a number"));
+  EXPECT_THAT(run_rovigo({"config", "--set", "robot.max_speed_m_s=fast"}).err,
+              HasSubstr("not a number"));
 }
 
 TEST(CommandLine, BatchAnswersEveryLineInOrder) {
@@ -164,8 +185,12 @@ TEST(CommandLine, BatchAnswersEveryLineInOrder) {
 TEST(CommandLine, AnImportedMapExportsAndPlansAsItsSource) {
   const TemporaryFolder folder;
   write_walled_room(folder.path().string());
-  ASSERT_EQ(run_rovigo({"import", folder / "room.yaml", "-o", folder / "room.rovigo"}).exit_code, 0);
-  ASSERT_EQ(run_rovigo({"export", folder / "room.rovigo", "--format", "ros", "-o", folder / "again.yaml"}).exit_code, 0);
+  ASSERT_EQ(run_rovigo({"import", folder / "room.yaml", "-o", folder / "room.rovigo"}).exit_code,
+            0);
+  ASSERT_EQ(
+      run_rovigo({"export", folder / "room.rovigo", "--format", "ros", "-o", folder / "again.yaml"})
+          .exit_code,
+      0);
   const auto length = [&](const std::string& map) {
     const auto r = run_rovigo({"plan", folder / map, "--start", "1,2", "--goal", "3,1", "--json"});
     return nlohmann::json::parse(r.out).at("path_length_m").get<double>();
@@ -178,10 +203,12 @@ TEST(CommandLine, AnImportedMapExportsAndPlansAsItsSource) {
 TEST(CommandLine, AFailedSaveLeavesTheOldMapWhole) {
   const TemporaryFolder folder;
   write_walled_room(folder.path().string());
-  ASSERT_EQ(run_rovigo({"import", folder / "room.yaml", "-o", folder / "room.rovigo"}).exit_code, 0);
+  ASSERT_EQ(run_rovigo({"import", folder / "room.yaml", "-o", folder / "room.rovigo"}).exit_code,
+            0);
   const std::string before = rovigo::test::read_text(folder / "room.rovigo");
-  write_text(folder / "bad.yaml", "image: missing.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\n"
-                                  "occupied_thresh: 0.65\nfree_thresh: 0.196\n");
+  write_text(folder / "bad.yaml",
+             "image: missing.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\n"
+             "occupied_thresh: 0.65\nfree_thresh: 0.196\n");
   EXPECT_EQ(run_rovigo({"import", folder / "bad.yaml", "-o", folder / "room.rovigo"}).exit_code, 2);
   EXPECT_EQ(rovigo::test::read_text(folder / "room.rovigo"), before);
 }

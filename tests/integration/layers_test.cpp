@@ -48,12 +48,14 @@ std::string where(const Include& i) {
 TEST(Layers, EveryModuleIncludesOnlyTheModulesBelowIt) {
   const std::set<std::string> modules{"maps", "slam", "planning", "control", "sim", "app"};
   const std::map<std::string, std::set<std::string>> below{
-      {"maps", {}}, {"slam", {"maps"}}, {"planning", {"maps"}}, {"control", {"maps"}}, {"sim", {"maps"}},
-      {"app", {"maps", "slam", "planning", "control", "sim"}}};
+      {"maps", {}},           {"slam", {"maps"}},
+      {"planning", {"maps"}}, {"control", {"maps"}},
+      {"sim", {"maps"}},      {"app", {"maps", "slam", "planning", "control", "sim"}}};
   int edges = 0;
   for (const Include& i : all_includes()) {
     const std::string target = i.target.substr(0, i.target.find('/'));
-    if (i.target.find('/') == std::string::npos || !modules.count(target) || target == i.module) continue;
+    if (i.target.find('/') == std::string::npos || !modules.count(target) || target == i.module)
+      continue;
     ++edges;
     const bool trajectory_type = i.module == "control" && i.target == "planning/trajectory.h";
     EXPECT_TRUE(below.at(i.module).count(target) || trajectory_type) << where(i);
@@ -64,11 +66,11 @@ TEST(Layers, EveryModuleIncludesOnlyTheModulesBelowIt) {
 TEST(Layers, EveryHeavyLibraryStaysBehindItsModule) {
   // Prefix of the include path, and the folders that may use it.
   const std::vector<std::pair<std::string, std::set<std::string>>> owners{
-      {"ompl/", {"planning"}},     {"btBullet", {"sim"}},       {"Bullet", {"sim"}},
-      {"LinearMath/", {"sim"}},    {"embree", {"sim"}},         {"sdf/", {"sim"}},
-      {"mrpt/vision/", {"slam"}},  {"mrpt/slam/", {"slam"}},    {"ceres/", {"slam"}},
-      {"CLI/", {"app"}},           {"spdlog/", {"app"}},        {"SQLiteCpp/", {"maps"}},
-      {"sqlite3.h", {"maps"}},     {"octomap/", {"maps"}},      {"pcl/", {"maps", "slam"}},
+      {"ompl/", {"planning"}},    {"btBullet", {"sim"}},    {"Bullet", {"sim"}},
+      {"LinearMath/", {"sim"}},   {"embree", {"sim"}},      {"sdf/", {"sim"}},
+      {"mrpt/vision/", {"slam"}}, {"mrpt/slam/", {"slam"}}, {"ceres/", {"slam"}},
+      {"CLI/", {"app"}},          {"spdlog/", {"app"}},     {"SQLiteCpp/", {"maps"}},
+      {"sqlite3.h", {"maps"}},    {"octomap/", {"maps"}},   {"pcl/", {"maps", "slam"}},
       {"boost/", {"app", "slam"}}};
   for (const Include& i : all_includes()) {
     for (const auto& [prefix, modules] : owners) {
@@ -81,7 +83,8 @@ TEST(Layers, LibrariesNeitherPrintNorExitNorReadTheEnvironmentOrAClock) {
   const std::regex forbidden(
       R"(std::cout|std::cerr|\bprintf\(|\bputs\(|std::exit|\babort\(\)|getenv|steady_clock|system_clock|srand\(|std::random_device)");
   for (const std::string module : {"maps", "slam", "planning", "control", "sim"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(ROVIGO_SOURCE_DIR) / module)) {
+    for (const auto& entry :
+         fs::recursive_directory_iterator(fs::path(ROVIGO_SOURCE_DIR) / module)) {
       if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
       std::ifstream in(entry.path());
       std::string text;

@@ -1,0 +1,127 @@
+#include "slam/grid_match.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "maps/distance_field.h"
+
+namespace rovigo::slam {
+
+namespace {
+
+constexpr double kGridSigmaM = 0.02;  // a wall's place within its 5 cm cell
+constexpr double kCauchyScale = 2.0;  // in sigmas
+constexpr double kInlierSigmas = 3.0;
+constexpr int kIterations = 15;
+// Neighbouring points share their errors (one wall, one cell row): count them as fewer.
+constexpr double kIndependentShare = 0.1;
+
+/// Distances from free cells to obstacles and from obstacles to free ground, in one signed field.
+std::vector<float> signed_meters(const maps::OccupancyGrid& grid) {
+  maps::OccupancyGrid inverted = grid;
+  for (auto& cell : inverted.cells) {
+    cell = maps::OccupancyGrid::is_occupied(cell) ? maps::OccupancyGrid::kFree
+                                                  : maps::OccupancyGrid::kOccupied;
+  }
+  std::vector<float> out = maps::distance_to_occupied(grid).meters;
+  const std::vector<float> inside = maps::distance_to_occupied(inverted).meters;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (maps::OccupancyGrid::is_occupied(grid.cells[i])) out[i] = -inside[i];
+  }
+  return out;
+}
+
+/// The scan's cost at one pose, quadratic around it.
+struct Linearized {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  int points = 0;
+  int inliers = 0;
+};
+
+Linearized linearize(const SignedDistanceField& field, const std::vector<ScanPoint>& scan,
+                     const TPose2D& pose) {
+  Linearized out;
+  for (const ScanPoint& p : scan) {
+    const TPoint2D map_point = maps::transform(pose, p.base_point);
+    const auto sample = field.at(map_point);
+    if (!sample.known) continue;
+    ++out.points;
+    const double variance = p.sigma_m * p.sigma_m + kGridSigmaM * kGridSigmaM;
+    const double normalized = sample.meters / std::sqrt(variance);
+    out.inliers += std::abs(normalized) < kInlierSigmas;
+    const double ratio = normalized / kCauchyScale;
+    const double weight = kIndependentShare / (variance * (1.0 + ratio * ratio));
+    const Eigen::Vector2d arm(-(map_point.y - pose.y), map_point.x - pose.x);
+    const Eigen::Vector3d jacobian(sample.gradient.x(), sample.gradient.y(),
+                                   sample.gradient.dot(arm));
+    out.information += weight * jacobian * jacobian.transpose();
+    out.gradient += weight * sample.meters * jacobian;
+  }
+  return out;
+}
+
+}  // namespace
+
+SignedDistanceField::SignedDistanceField(const maps::OccupancyGrid& grid)
+    : geometry_(grid.geometry), meters_(signed_meters(grid)), known_(grid.cells.size()) {
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    known_[i] = !maps::OccupancyGrid::is_unknown(grid.cells[i]) && std::isfinite(meters_[i]);
+  }
+}
+
+SignedDistanceField::Sample SignedDistanceField::at(const TPoint2D& point) const {
+  const double u = (point.x - geometry_.origin.x) / geometry_.resolution_m - 0.5;
+  const double v = (point.y - geometry_.origin.y) / geometry_.resolution_m - 0.5;
+  Sample out;
+  if (!(u >= 0.0 && v >= 0.0 && u < geometry_.width - 1 && v < geometry_.height - 1)) return out;
+  const maps::Cell low{static_cast<int>(u), static_cast<int>(v)};
+  const double fx = u - low.x, fy = v - low.y;
+  double corner[2][2];
+  for (int dy = 0; dy < 2; ++dy) {
+    for (int dx = 0; dx < 2; ++dx) {
+      const std::size_t index = geometry_.index_of({low.x + dx, low.y + dy});
+      if (!known_[index]) return out;
+      corner[dy][dx] = meters_[index];
+    }
+  }
+  out.known = true;
+  out.meters = (1 - fy) * ((1 - fx) * corner[0][0] + fx * corner[0][1]) +
+               fy * ((1 - fx) * corner[1][0] + fx * corner[1][1]);
+  out.gradient.x() =
+      ((1 - fy) * (corner[0][1] - corner[0][0]) + fy * (corner[1][1] - corner[1][0])) /
+      geometry_.resolution_m;
+  out.gradient.y() =
+      ((1 - fx) * (corner[1][0] - corner[0][0]) + fx * (corner[1][1] - corner[0][1])) /
+      geometry_.resolution_m;
+  return out;
+}
+
+GridMatch match_scan(const SignedDistanceField& field, const std::vector<ScanPoint>& scan,
+                     const TPose2D& prior, const Eigen::Matrix3d& prior_covariance) {
+  // A covariance this small would pin the pose; a nanometre keeps it invertible.
+  const Eigen::Matrix3d prior_information =
+      (prior_covariance + 1e-9 * Eigen::Matrix3d::Identity()).inverse();
+  TPose2D pose = prior;
+  Linearized cost = linearize(field, scan, pose);
+  for (int i = 0; i < kIterations; ++i) {
+    const Eigen::Vector3d away(pose.x - prior.x, pose.y - prior.y,
+                               maps::wrap_angle(pose.phi - prior.phi));
+    const Eigen::Vector3d step = (cost.information + prior_information)
+                                     .ldlt()
+                                     .solve(-(cost.gradient + prior_information * away));
+    if (!step.allFinite()) break;
+    pose = {pose.x + step.x(), pose.y + step.y(), maps::wrap_angle(pose.phi + step.z())};
+    cost = linearize(field, scan, pose);
+    if (step.norm() < 1e-5) break;
+  }
+  GridMatch match;
+  match.look = {pose, cost.information, cost.gradient};
+  match.points = cost.points;
+  match.inlier_share = cost.points > 0 ? static_cast<double>(cost.inliers) / cost.points : 0.0;
+  return match;
+}
+
+}  // namespace rovigo::slam
