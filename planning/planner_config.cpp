@@ -107,6 +107,11 @@ void TimingConfig::describe(maps::SettingsVisitor& v) {
           .min = 0.01,
           .max = 3.2},
          turn_first_threshold_rad);
+  v.real({.name = "max_wheel_speed_m_s",
+          .help = "Highest speed of either wheel's rim; lowers speed in tight bends.",
+          .min = 0.05,
+          .max = 2.0},
+         max_wheel_speed_m_s);
   v.real({.name = "escape_speed_m_s",
           .help = "Speed while leaving the band around obstacles.",
           .min = 0.02,
@@ -125,6 +130,12 @@ void PlannerConfig::describe(maps::SettingsVisitor& v) {
           .choices = {"astar", "rrtconnect", "rrtstar"},
           .advanced = false},
          planner);
+  v.real({.name = "escape_max_distance_m",
+          .help = "A start nearer to an obstacle than the robot's radius, or on unknown ground, "
+                  "may be this far from free ground.",
+          .min = 0.0,
+          .max = 10.0},
+         escape_max_distance_m);
   astar.describe(v);
   ompl.describe(v);
   spline.describe(v);

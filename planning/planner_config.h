@@ -36,7 +36,7 @@ struct OmplConfig {
 struct SplineConfig {
   bool smooth = true;              ///< false: drive the shortened polyline, stop-turn-go
   double max_curvature_1_m = 4.0;  ///< tighter bends become in-place turns
-  double control_spacing_m = 0.4;  ///< between control points before refinement
+  double control_spacing_m = 0.2;  ///< between control points before refinement
   double sample_spacing_m = 0.02;  ///< of the points handed out
   void describe(maps::SettingsVisitor& v);
 };
@@ -46,13 +46,15 @@ struct TimingConfig {
   double acceleration_fraction = 0.8;      ///< of its highest accelerations
   double max_lateral_acceleration = 0.25;  ///< m/s^2, v^2 times curvature
   double turn_first_threshold_rad = 0.5236;
+  double max_wheel_speed_m_s = 0.8;  ///< at the rim; the motors' no-load speed is 1.0
   double escape_speed_m_s = 0.15;
   double sample_period_s = 0.02;
   void describe(maps::SettingsVisitor& v);
 };
 
 struct PlannerConfig {
-  std::string planner = "astar";  ///< text form of PlannerKind
+  std::string planner = "astar";       ///< text form of PlannerKind
+  double escape_max_distance_m = 1.0;  ///< how far a start in the band may be from free ground
   AStarConfig astar;
   OmplConfig ompl;
   SplineConfig spline;

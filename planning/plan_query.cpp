@@ -1,0 +1,330 @@
+#include "planning/plan_query.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "planning/escape.h"
+#include "planning/refusal.h"
+#include "planning/sampling_planner.h"
+#include "planning/shortcut.h"
+#include "planning/timing.h"
+
+namespace rovigo::planning {
+
+namespace {
+
+/// Path points this near to each other are one.
+constexpr double kSamePointM = 1e-6;
+/// Clearances are reported up to this; further is open ground.
+constexpr double kClearanceReportedM = 10.0;
+
+void append(std::vector<TPoint2D>& points, const TPoint2D& p) {
+  if (points.empty() || maps::distance(points.back(), p) > kSamePointM) points.push_back(p);
+}
+
+std::string meters(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f m", value);
+  return text;
+}
+
+PlannerConfig validated(const PlannerConfig& config) {
+  validate(config);
+  return config;
+}
+
+/// Distance from the path to the nearest occupied cell's edge, up to kClearanceReportedM.
+double smallest_clearance(const FreeSpace& space, const maps::DistanceField& field,
+                          const Path& path) {
+  const auto& g = space.geometry();
+  const auto roughly = [&](const TPoint2D& p, double sign) {
+    const maps::Cell cell = g.cell_at(p);
+    if (!g.contains(cell)) return 0.0;
+    return field.at(cell) + sign * (maps::distance(p, g.center_of(cell)) + kClearanceTolerance);
+  };
+  double best = kClearanceReportedM;
+  for (const TPoint2D& p : path.points) best = std::min(best, roughly(p, 1.0));
+  for (std::size_t i = 0; i < path.points.size(); ++i) {
+    const TPoint2D& a = path.points[i > 0 ? i - 1 : 0];
+    const TPoint2D& b = path.points[i];
+    if (roughly(b, -1.0) - maps::distance(a, b) >= best) continue;
+    best = std::min(best, space.clearance(a, b, best));
+  }
+  return best;
+}
+
+}  // namespace
+
+PlanningContext::PlanningContext(const maps::OccupancyGrid& g, const maps::RobotModel& r,
+                                 const maps::InflationConfig& i, const PlannerConfig& c)
+    : grid(g),
+      robot(r),
+      inflation(i),
+      config(validated(c)),
+      kind(parse_planner_kind(c.planner).value_or(PlannerKind::kAStar)),
+      costmap(maps::inflate_safe(grid, i)),
+      field(maps::distance_to_occupied(grid)),
+      search_grid(costmap, c.astar.connectivity),
+      space(grid, field, costmap,
+            i.map_mode == maps::MapMode::kEverything ? 0.0 : i.robot_radius_m) {}
+
+PlanResult PlanQuery::run() {
+  begin(PlanStage::kSearch);
+  if (settle_start() && settle_targets() && search_legs()) {
+    result_.status = PlanStatus::kOk;
+    begin(PlanStage::kSmooth);
+    smooth_path();
+    begin(PlanStage::kTime);
+    time_path();
+    measure();
+  }
+  begin(PlanStage::kDone);
+  return std::move(result_);
+}
+
+bool PlanQuery::settle_start() {
+  const TPoint2D given = maps::position_of(request_.start);
+  const auto& g = context_.grid.geometry;
+  if (!g.contains(given)) {
+    return refuse(PlanStatus::kStartOutsideMap, given,
+                  "The start " + text_of(given) + " is outside the map: " + map_extent() + ".");
+  }
+  start_ = given;
+  if (context_.space.is_free(given)) return true;
+  const double reach = context_.config.escape_max_distance_m;
+  if (const auto way = find_escape(context_.grid, context_.space, given, reach)) {
+    escape_ = *way;
+    start_ = way->back();
+    result_.escape = true;
+    return true;
+  }
+  return refuse(PlanStatus::kStartOccupied, given,
+                "The start " + text_of(given) + why_not_free(given) +
+                    " and no free ground lies within " + meters(reach) +
+                    " of it (escape_max_distance_m); move the start.");
+}
+
+bool PlanQuery::settle_targets() {
+  std::vector<TPoint2D> given = request_.via;
+  given.push_back(maps::position_of(request_.goal));
+  for (const TPoint2D& target : given) {
+    const std::string name = "The " + name_of_target(targets_.size());
+    if (!context_.grid.geometry.contains(target)) {
+      return refuse_goal(
+          PlanStatus::kGoalOutsideMap, target,
+          name + " " + text_of(target) + " is outside the map: " + map_extent() + ".");
+    }
+    const auto near = free_point_in_cell(context_.space, target);
+    if (!near) {
+      return refuse_goal(PlanStatus::kGoalOccupied, target,
+                         name + " " + text_of(target) + why_not_free(target) + ".");
+    }
+    targets_.push_back(*near);
+    if (maps::distance(*near, target) > kSamePointM) {
+      result_.message += name + " was moved by " + meters(maps::distance(*near, target)) + " to " +
+                         text_of(*near) +
+                         " to keep robot_radius_m = " + meters(context_.inflation.robot_radius_m) +
+                         " clear. ";
+    }
+  }
+  return true;
+}
+
+bool PlanQuery::search_legs() {
+  TPoint2D from = start_;
+  problem_.polyline.points.push_back(from);
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    if (!search_leg(from, targets_[i], name_of_target(i))) return false;
+    from = targets_[i];
+    problem_.pinned.push_back(problem_.polyline.points.size() - 1);
+  }
+  return true;
+}
+
+bool PlanQuery::search_leg(const TPoint2D& from, const TPoint2D& to, const std::string& name) {
+  const auto& g = context_.grid.geometry;
+  const SearchWeights weights{.soft_cost = context_.config.astar.soft_cost_weight,
+                              .heuristic = context_.config.astar.heuristic_weight};
+  std::optional<SearchGrid> narrowed;  // with moves closed that prove narrower than the rover
+  constexpr int kMostClosed = 50;
+  for (int attempt = 0; attempt <= kMostClosed; ++attempt) {
+    const SearchGrid& cells = narrowed ? *narrowed : context_.search_grid;
+    const GridSearchResult found = search_.find(cells, g.cell_at(from), g.cell_at(to), weights);
+    result_.expanded_cells += found.expanded_cells;
+    if (!found.found) break;
+    Path leg;
+    append(leg.points, from);
+    for (const maps::Cell cell : found.cells) append(leg.points, g.center_of(cell));
+    append(leg.points, to);
+    double searched_m = found.length_m;
+    if (context_.kind != PlannerKind::kAStar) {
+      if (!sample_leg(from, to, name, leg)) return false;
+      searched_m = length_m(leg);
+    }
+    const ShortcutResult straight =
+        shortcut(context_.space, leg, context_.config.astar.soft_cost_weight);
+    if (straight.ok) {
+      for (const TPoint2D& p : leg.points) append(result_.grid_path.points, p);
+      for (const TPoint2D& p : straight.path.points) append(problem_.polyline.points, p);
+      result_.search_length_m += searched_m;
+      return true;
+    }
+    if (!narrowed) narrowed = context_.search_grid;
+    narrowed->close_move(g.cell_at(leg.points[straight.blocked]),
+                         g.cell_at(leg.points[straight.blocked + 1]));
+  }
+  return refuse_goal(
+      PlanStatus::kNoPath, to,
+      "No way wide enough for robot_radius_m = " + meters(context_.inflation.robot_radius_m) +
+          " leads from " + text_of(from) + " to the " + name + " " + text_of(to) + ".");
+}
+
+bool PlanQuery::sample_leg(const TPoint2D& from, const TPoint2D& to, const std::string& name,
+                           Path& leg) {
+  if (maps::distance(from, to) <= kSamePointM) return true;
+  const SamplingResult sampled =
+      sample_path(context_.space, context_.kind, from, to, context_.config.ompl, request_.seed);
+  result_.expanded_cells += sampled.states;
+  if (!sampled.found) {
+    return refuse(PlanStatus::kTimeout, to,
+                  std::string(to_string(context_.kind)) + " found no way to the " + name + " " +
+                      text_of(to) + " within its iterations, although one exists; raise " +
+                      to_string(context_.kind) + "_iterations or use astar.");
+  }
+  leg = sampled.path;
+  return true;
+}
+
+void PlanQuery::smooth_path() {
+  if (problem_.polyline.points.size() < 2) return;
+  const auto wanted = [&](bool given, double heading, const TPoint2D& a, const TPoint2D& b) {
+    const double along = std::atan2(b.y - a.y, b.x - a.x);
+    const double off = std::abs(maps::wrap_angle(heading - along));
+    return given && off <= context_.config.timing.turn_first_threshold_rad;
+  };
+  const auto& p = problem_.polyline.points;
+  if (escape_.empty() && wanted(request_.start_heading_given, request_.start.phi, p[0], p[1])) {
+    problem_.start_heading_rad = request_.start.phi;
+  }
+  if (wanted(request_.goal_heading_given, request_.goal.phi, p[p.size() - 2], p.back())) {
+    problem_.goal_heading_rad = request_.goal.phi;
+  }
+  pieces_ = smooth(context_.space, problem_, context_.config.spline);
+}
+
+void PlanQuery::time_path() {
+  time_pieces(pieces_);
+  if (is_safe(pieces_, result_.trajectory)) return;
+  // Never expected; but a plan that fails its own check is not handed out.
+  SplineConfig straight = context_.config.spline;
+  straight.smooth = false;
+  problem_.start_heading_rad.reset();
+  problem_.goal_heading_rad.reset();
+  pieces_ = smooth(context_.space, problem_, straight);
+  time_pieces(pieces_);
+}
+
+void PlanQuery::time_pieces(const std::vector<PathPiece>& pieces) {
+  const auto& config = context_.config.timing;
+  TimingProblem timing;
+  timing.pieces = escape_pieces();
+  timing.at = start_;
+  timing.pieces.insert(timing.pieces.end(), pieces.begin(), pieces.end());
+  if (request_.start_heading_given) timing.start_heading_rad = request_.start.phi;
+  if (request_.goal_heading_given) timing.goal_heading_rad = request_.goal.phi;
+  result_.trajectory = planning::time_path(timing, limits_of(context_.robot, config), config);
+  result_.smooth_path = sampled(timing.pieces, context_.config.spline.sample_spacing_m);
+  if (result_.smooth_path.points.empty()) result_.smooth_path.points.push_back(start_);
+}
+
+std::vector<PathPiece> PlanQuery::escape_pieces() const {
+  std::vector<PathPiece> pieces;
+  for (std::size_t i = 1; i < escape_.size(); ++i) {
+    if (maps::distance(escape_[i - 1], escape_[i]) <= kSamePointM) continue;
+    pieces.push_back({.curve = CubicBSpline::uniform({escape_[i - 1], escape_[i]}), .slow = true});
+  }
+  return pieces;
+}
+
+bool PlanQuery::is_safe(const std::vector<PathPiece>& pieces, const Trajectory& trajectory) const {
+  if (pieces.empty()) return true;
+  // Free driving begins where the escape ends; before that the trajectory is not expected free.
+  bool escaping = !escape_.empty();
+  for (std::size_t i = 1; i < trajectory.points.size(); ++i) {
+    const TPoint2D a = maps::position_of(trajectory.points[i - 1].pose);
+    const TPoint2D b = maps::position_of(trajectory.points[i].pose);
+    if (escaping) {
+      escaping = maps::distance(a, start_) > kSamePointM;
+      if (escaping) continue;
+    }
+    if (!context_.space.is_free(a, b)) return false;
+  }
+  return true;
+}
+
+void PlanQuery::measure() {
+  result_.path_length_m = length_m(result_.trajectory);
+  Path driven;
+  driven.points.reserve(result_.trajectory.points.size());
+  for (const auto& p : result_.trajectory.points)
+    driven.points.push_back(maps::position_of(p.pose));
+  result_.min_clearance_m = smallest_clearance(context_.space, context_.field, driven) -
+                            context_.inflation.robot_radius_m;
+  if (result_.escape) {
+    result_.message +=
+        "The start is nearer to an obstacle than robot_radius_m or on unknown "
+        "ground; the first " +
+        meters(length_m(Path{escape_})) + " leave it slowly. ";
+  }
+  if (!result_.message.empty()) result_.message.pop_back();  // the last space
+}
+
+void PlanQuery::begin(PlanStage stage) const {
+  if (request_.on_stage) request_.on_stage(stage);
+}
+
+bool PlanQuery::refuse(PlanStatus status, const TPoint2D& point, std::string message) {
+  const std::size_t expanded = result_.expanded_cells;
+  result_ = PlanResult();
+  result_.status = status;
+  result_.expanded_cells = expanded;
+  result_.offending_point = point;
+  result_.message = std::move(message);
+  return false;
+}
+
+bool PlanQuery::refuse_goal(PlanStatus status, const TPoint2D& point, std::string message) {
+  refuse(status, point, std::move(message));
+  const auto& g = context_.grid.geometry;
+  if (const auto cell = search_.nearest_reachable(context_.search_grid, g.cell_at(start_), point)) {
+    result_.nearest_reachable_goal = g.center_of(*cell);
+  }
+  result_.message += nearest_hint(result_.nearest_reachable_goal);
+  return false;
+}
+
+std::string PlanQuery::why_not_free(const TPoint2D& point) const {
+  const maps::Cell cell = context_.grid.geometry.cell_at(point);
+  if (maps::OccupancyGrid::is_occupied(context_.grid.at(cell))) return " lies inside an obstacle";
+  const double radius = context_.inflation.robot_radius_m;
+  const double clearance = context_.space.clearance(point, radius);
+  if (clearance < radius) {
+    return " is " + meters(clearance) +
+           " from an obstacle, nearer than robot_radius_m = " + meters(radius);
+  }
+  return " lies on unknown ground, which map mode 0 does not enter (modes 1 and 2 do)";
+}
+
+std::string PlanQuery::map_extent() const {
+  const auto& g = context_.grid.geometry;
+  return extent_of(g.origin,
+                   {g.origin.x + g.width * g.resolution_m, g.origin.y + g.height * g.resolution_m});
+}
+
+std::string PlanQuery::name_of_target(std::size_t index) const {
+  if (index == request_.via.size()) return "goal";
+  return "via point " + std::to_string(index + 1);
+}
+
+}  // namespace rovigo::planning

@@ -1,0 +1,73 @@
+#pragma once
+// One query through all stages: settle the ends, search, straighten, smooth, time, measure.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planning/astar.h"
+#include "planning/free_space.h"
+#include "planning/planner.h"
+#include "planning/smoother.h"
+
+namespace rovigo::planning {
+
+/// What all queries on one map share; prepared once by Planner, not changed afterwards.
+struct PlanningContext {
+  maps::OccupancyGrid grid;
+  maps::RobotModel robot;
+  maps::InflationConfig inflation;
+  PlannerConfig config;
+  PlannerKind kind;
+  maps::Costmap costmap;
+  maps::DistanceField field;
+  SearchGrid search_grid;
+  FreeSpace space;
+
+  /// Throws maps::InputError for settings out of range.
+  PlanningContext(const maps::OccupancyGrid& grid, const maps::RobotModel& robot,
+                  const maps::InflationConfig& inflation, const PlannerConfig& config);
+  PlanningContext(const PlanningContext&) = delete;  // `space` refers to its neighbours
+  PlanningContext& operator=(const PlanningContext&) = delete;
+};
+
+class PlanQuery {
+ public:
+  PlanQuery(const PlanningContext& context, GridSearch& search, const PlanRequest& request)
+      : context_(context), search_(search), request_(request) {}
+
+  PlanResult run();
+
+ private:
+  bool settle_start();
+  bool settle_targets();
+  bool search_legs();
+  bool search_leg(const TPoint2D& from, const TPoint2D& to, const std::string& name);
+  bool sample_leg(const TPoint2D& from, const TPoint2D& to, const std::string& name, Path& leg);
+  void smooth_path();
+  void time_path();
+  void measure();
+
+  void begin(PlanStage stage) const;
+  bool refuse(PlanStatus status, const TPoint2D& point, std::string message);
+  bool refuse_goal(PlanStatus status, const TPoint2D& point, std::string message);
+  std::string why_not_free(const TPoint2D& point) const;
+  std::string map_extent() const;
+  std::string name_of_target(std::size_t index) const;
+  std::vector<PathPiece> escape_pieces() const;
+  bool is_safe(const std::vector<PathPiece>& pieces, const Trajectory& trajectory) const;
+  void time_pieces(const std::vector<PathPiece>& pieces);
+
+  const PlanningContext& context_;
+  GridSearch& search_;
+  const PlanRequest& request_;
+
+  PlanResult result_;
+  std::vector<TPoint2D> escape_;   ///< from the start given to start_, when they differ
+  TPoint2D start_;                 ///< where free driving begins
+  std::vector<TPoint2D> targets_;  ///< via points and goal, each free
+  SmoothingProblem problem_;
+  std::vector<PathPiece> pieces_;
+};
+
+}  // namespace rovigo::planning

@@ -1,0 +1,317 @@
+#include "planning/smoother.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "planning/penalized_fit.h"
+
+namespace rovigo::planning {
+
+namespace {
+
+constexpr double kSmoothingLengthM = 0.5;  // bends are spread over about this length to each side
+constexpr double kComfortM = 0.05;         // pushed this far beyond the radius where there is room
+constexpr double kCurveMarginM = 5e-4;     // covers the sagitta between samples
+constexpr double kPivotTurnRad = 2.4;      // sharper vertices are turned at in place at once
+constexpr double kPinWeight = 1e7;
+constexpr int kPushRounds = 6;
+constexpr int kRepairRounds = 14;
+constexpr int kRefinements = 3;
+
+double heading(const TPoint2D& a, const TPoint2D& b) { return std::atan2(b.y - a.y, b.x - a.x); }
+
+/// A stretch of the polyline that is to become one curve.
+struct Stretch {
+  std::vector<TPoint2D> vertices;
+  std::vector<char> pinned;  ///< per vertex
+  std::optional<double> start_heading;
+  std::optional<double> goal_heading;
+};
+
+Stretch part(const Stretch& whole, std::size_t first, std::size_t last) {
+  const auto from = static_cast<std::ptrdiff_t>(first);
+  const auto to = static_cast<std::ptrdiff_t>(last) + 1;
+  Stretch out;
+  out.vertices.assign(whole.vertices.begin() + from, whole.vertices.begin() + to);
+  out.pinned.assign(whole.pinned.begin() + from, whole.pinned.begin() + to);
+  if (first == 0) out.start_heading = whole.start_heading;
+  if (last + 1 == whole.vertices.size()) out.goal_heading = whole.goal_heading;
+  return out;
+}
+
+/// Sites at equal distances along the stretch, anew from every pinned vertex.
+struct Sites {
+  std::vector<TPoint2D> points;
+  std::vector<char> pinned;
+};
+
+void add_sites(const std::vector<TPoint2D>& vertices, std::size_t first, std::size_t last,
+               double spacing, std::size_t least, Sites& sites) {
+  double length = 0.0;
+  for (std::size_t i = first; i < last; ++i) length += maps::distance(vertices[i], vertices[i + 1]);
+  const auto n = std::max(least, static_cast<std::size_t>(std::ceil(length / spacing)));
+  const double step = length / static_cast<double>(n);
+  std::size_t leg = first;
+  double leg_start = 0.0;
+  double leg_length = maps::distance(vertices[leg], vertices[leg + 1]);
+  for (std::size_t k = 1; k < n; ++k) {
+    const double s = step * static_cast<double>(k);
+    while (s > leg_start + leg_length && leg + 2 <= last) {
+      leg_start += leg_length;
+      ++leg;
+      leg_length = maps::distance(vertices[leg], vertices[leg + 1]);
+    }
+    const double f = leg_length > 0.0 ? std::min(1.0, (s - leg_start) / leg_length) : 0.0;
+    const TPoint2D& a = vertices[leg];
+    const TPoint2D& b = vertices[leg + 1];
+    sites.points.push_back({a.x + f * (b.x - a.x), a.y + f * (b.y - a.y)});
+    sites.pinned.push_back(0);
+  }
+  sites.points.push_back(vertices[last]);
+  sites.pinned.push_back(1);
+}
+
+Sites make_sites(const Stretch& stretch, double spacing) {
+  Sites sites;
+  sites.points.push_back(stretch.vertices.front());
+  sites.pinned.push_back(1);
+  std::size_t first = 0;
+  for (std::size_t i = 1; i < stretch.vertices.size(); ++i) {
+    const bool is_last = i + 1 == stretch.vertices.size();
+    if (!is_last && !stretch.pinned[i]) continue;
+    add_sites(stretch.vertices, first, i, spacing, 4, sites);
+    first = i;
+  }
+  return sites;
+}
+
+/// Fits one stretch with one spacing of control points.
+class CurveFit {
+ public:
+  CurveFit(const FreeSpace& space, const SplineConfig& config, const Stretch& stretch,
+           double spacing)
+      : space_(space), config_(config), sites_(make_sites(stretch, spacing)) {
+    const std::size_t n = sites_.points.size();
+    fit_.targets = sites_.points;
+    fit_.control = sites_.points;
+    fit_.weights.assign(n, 1.0);
+    fit_.fixed.assign(n, 0);
+    fit_.fixed.front() = fit_.fixed.back() = 1;
+    for (std::size_t i = 1; i + 1 < n; ++i) {
+      if (sites_.pinned[i]) fit_.weights[i] = kPinWeight;
+    }
+    fit_.bending = std::pow(kSmoothingLengthM / spacing, 4.0);
+    const double reach = maps::distance(sites_.points[0], sites_.points[1]);
+    const double reach_back = maps::distance(sites_.points[n - 1], sites_.points[n - 2]);
+    if (stretch.start_heading) fix(1, sites_.points.front(), *stretch.start_heading, reach);
+    if (stretch.goal_heading) fix(n - 2, sites_.points.back(), *stretch.goal_heading, -reach_back);
+  }
+
+  /// The curve, when it can be made free and easy enough; else the place of the first trouble is
+  /// left in `trouble()`.
+  std::optional<CubicBSpline> run() {
+    for (int round = 0; round < kPushRounds + kRepairRounds; ++round) {
+      solve(fit_);
+      push_from_obstacles();
+      if (round < kPushRounds) continue;
+      const CubicBSpline curve = CubicBSpline::uniform(fit_.control);
+      if (!mend_spans(curve)) return curve;
+    }
+    return std::nullopt;
+  }
+
+  const TPoint2D& trouble() const { return trouble_; }
+
+ private:
+  void fix(std::size_t index, const TPoint2D& end, double heading_rad, double reach) {
+    fit_.fixed[index] = 1;
+    fit_.control[index] = {end.x + reach * std::cos(heading_rad),
+                           end.y + reach * std::sin(heading_rad)};
+  }
+
+  void push_from_obstacles() {
+    const double wanted = space_.radius_m() + kComfortM;
+    if (space_.radius_m() <= 0.0) return;
+    for (std::size_t i = 1; i + 1 < fit_.control.size(); ++i) {
+      if (sites_.pinned[i]) continue;
+      const auto& c = fit_.control;
+      const TPoint2D site{(c[i - 1].x + 4.0 * c[i].x + c[i + 1].x) / 6.0,
+                          (c[i - 1].y + 4.0 * c[i].y + c[i + 1].y) / 6.0};
+      const FreeSpace::Slope slope = space_.slope(site);
+      const double missing = wanted - slope.clearance_m;
+      const double norm = std::hypot(slope.gradient.x, slope.gradient.y);
+      if (!(missing > 0.0) || norm < 0.1) continue;  // on a ridge between two obstacles: leave it
+      const double push = 0.7 * missing / norm;
+      fit_.targets[i].x += push * slope.gradient.x;
+      fit_.targets[i].y += push * slope.gradient.y;
+    }
+  }
+
+  /// Draws spans that are not free towards their targets and eases those that are too tight.
+  /// False when there are none.
+  bool mend_spans(const CubicBSpline& curve) {
+    bool any = false;
+    const std::size_t spans = fit_.control.size() - 1;
+    std::vector<double> factor(fit_.control.size(), 1.0);
+    for (std::size_t span = 0; span < spans; ++span) {
+      const Verdict verdict = judge(curve, span);
+      if (verdict == Verdict::kGood) continue;
+      if (!any) trouble_ = curve.position(static_cast<double>(span) + 0.5);
+      any = true;
+      const std::size_t first = span > 0 ? span - 1 : 0;
+      for (std::size_t i = first; i <= std::min(span + 2, spans); ++i) {
+        factor[i] =
+            verdict == Verdict::kNotFree ? 5.0 : std::max(0.5, factor[i] > 1.0 ? factor[i] : 0.5);
+      }
+    }
+    for (std::size_t i = 0; i < factor.size(); ++i) {
+      if (!sites_.pinned[i]) fit_.weights[i] = std::min(fit_.weights[i] * factor[i], kPinWeight);
+    }
+    return any;
+  }
+
+  enum class Verdict { kGood, kNotFree, kTooTight };
+  Verdict judge(const CubicBSpline& curve, std::size_t span) const {
+    const auto& c = fit_.control;
+    const double length = maps::distance(c[span], c[span + 1]);
+    const int n = std::max(2, static_cast<int>(std::ceil(length / config_.sample_spacing_m)));
+    CurvePoint last = curve.at(static_cast<double>(span));
+    bool tight = false;
+    for (int k = 1; k <= n; ++k) {
+      const CurvePoint next = curve.at(static_cast<double>(span) + static_cast<double>(k) / n);
+      if (!space_.is_free(last.position, next.position, kCurveMarginM)) return Verdict::kNotFree;
+      tight |= std::abs(next.curvature()) > config_.max_curvature_1_m;
+      last = next;
+    }
+    return tight ? Verdict::kTooTight : Verdict::kGood;
+  }
+
+  const FreeSpace& space_;
+  const SplineConfig& config_;
+  Sites sites_;
+  PenalizedFit fit_;
+  TPoint2D trouble_;
+};
+
+class Smoother {
+ public:
+  Smoother(const FreeSpace& space, const SplineConfig& config) : space_(space), config_(config) {}
+
+  void add(const Stretch& stretch) {
+    const std::size_t last = stretch.vertices.size() - 1;
+    const bool is_straight = last == 1;
+    if (is_straight && !bends(stretch)) {
+      pieces_.push_back({.curve = CubicBSpline::uniform(stretch.vertices)});
+      return;
+    }
+    if (!config_.smooth) {
+      is_straight ? add_without_headings(stretch) : split(stretch, 1);
+      return;
+    }
+    TPoint2D trouble;
+    double spacing = config_.control_spacing_m;
+    for (int i = 0; i < kRefinements; ++i, spacing *= 0.5) {
+      CurveFit fit(space_, config_, stretch, spacing);
+      if (auto curve = fit.run()) {
+        pieces_.push_back({.curve = std::move(*curve)});
+        return;
+      }
+      trouble = fit.trouble();
+    }
+    is_straight ? add_without_headings(stretch) : split(stretch, nearest_vertex(stretch, trouble));
+  }
+
+  std::vector<PathPiece> take() { return std::move(pieces_); }
+
+ private:
+  /// Does a two-point stretch have to leave its line to keep the headings asked for?
+  static bool bends(const Stretch& s) {
+    const double along = heading(s.vertices.front(), s.vertices.back());
+    const auto differs = [along](const std::optional<double>& h) {
+      return h && std::abs(maps::wrap_angle(*h - along)) > 1e-4;
+    };
+    return differs(s.start_heading) || differs(s.goal_heading);
+  }
+
+  void add_without_headings(Stretch stretch) {
+    stretch.start_heading.reset();
+    stretch.goal_heading.reset();
+    add(stretch);
+  }
+
+  void split(const Stretch& stretch, std::size_t at) {
+    add(part(stretch, 0, at));
+    add(part(stretch, at, stretch.vertices.size() - 1));
+  }
+
+  static std::size_t nearest_vertex(const Stretch& stretch, const TPoint2D& place) {
+    std::size_t best = 1;
+    for (std::size_t i = 2; i + 1 < stretch.vertices.size(); ++i) {
+      if (maps::distance(stretch.vertices[i], place) <
+          maps::distance(stretch.vertices[best], place)) {
+        best = i;
+      }
+    }
+    return best;
+  }
+
+  const FreeSpace& space_;
+  const SplineConfig& config_;
+  std::vector<PathPiece> pieces_;
+};
+
+bool is_pivot(const std::vector<TPoint2D>& v, std::size_t i) {
+  return std::abs(maps::wrap_angle(heading(v[i], v[i + 1]) - heading(v[i - 1], v[i]))) >
+         kPivotTurnRad;
+}
+
+}  // namespace
+
+std::vector<PathPiece> smooth(const FreeSpace& space, const SmoothingProblem& problem,
+                              const SplineConfig& config) {
+  Stretch whole;
+  whole.vertices = problem.polyline.points;
+  whole.pinned.assign(whole.vertices.size(), 0);
+  for (const std::size_t i : problem.pinned) whole.pinned[i] = 1;
+  whole.start_heading = problem.start_heading_rad;
+  whole.goal_heading = problem.goal_heading_rad;
+
+  Smoother smoother(space, config);
+  std::size_t first = 0;
+  for (std::size_t i = 1; i + 1 < whole.vertices.size(); ++i) {
+    if (!is_pivot(whole.vertices, i)) continue;
+    smoother.add(part(whole, first, i));
+    first = i;
+  }
+  smoother.add(part(whole, first, whole.vertices.size() - 1));
+  return smoother.take();
+}
+
+std::vector<double> sample_parameters(const CubicBSpline& curve, double spacing_m) {
+  std::vector<double> out{curve.begin()};
+  const auto& knots = curve.knots();
+  for (std::size_t k = 3; k + 4 < knots.size(); ++k) {
+    const double width = knots[k + 1] - knots[k];
+    if (width <= 0.0) continue;
+    // Speed is at most that of the control polygon's legs around the span.
+    const auto& c = curve.control_points();
+    double leg = 0.0;
+    for (std::size_t i = k - 3; i < k; ++i) leg = std::max(leg, maps::distance(c[i], c[i + 1]));
+    const int n = std::max(1, static_cast<int>(std::ceil(leg / spacing_m)));
+    for (int i = 1; i <= n; ++i) out.push_back(knots[k] + width * i / n);
+  }
+  return out;
+}
+
+Path sampled(const std::vector<PathPiece>& pieces, double spacing_m) {
+  Path path;
+  for (const PathPiece& piece : pieces) {
+    for (const double u : sample_parameters(piece.curve, spacing_m)) {
+      if (u == piece.curve.begin() && !path.points.empty()) continue;
+      path.points.push_back(piece.curve.position(u));
+    }
+  }
+  return path;
+}
+
+}  // namespace rovigo::planning
