@@ -1,0 +1,129 @@
+// The map file under attack: random content, cut files, flipped bits, a killed writer.
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <random>
+
+#include "maps/error.h"
+#include "maps/map_file.h"
+#include "tests/unit/maps/random_map.h"
+#include "tests/unit/maps/test_support.h"
+
+namespace rovigo::maps {
+namespace {
+
+using test::bytes_of;
+using test::difference;
+using test::put_bytes;
+using test::random_map;
+using test::ScratchFolder;
+
+class RandomMaps : public testing::TestWithParam<std::uint64_t> {
+ protected:
+  const ScratchFolder folder_;
+  const std::filesystem::path path_ = folder_ / "a.rovigo";
+  const SavedMap map_ = random_map(GetParam());
+};
+
+/// Refused with a clear error, or the very map that was saved: never something else.
+void expect_refused_or_same(const std::filesystem::path& path, const SavedMap& map,
+                            const std::string& context) {
+  try {
+    EXPECT_EQ(difference(load_map(path), map), "") << context << ": loaded, but changed";
+  } catch (const InputError&) {
+  }
+}
+
+/// Whatever comes out can be saved again, and holds no keyframe that was not there.
+void expect_recovery_is_sound(const std::filesystem::path& path, const SavedMap& map,
+                              const ScratchFolder& folder) {
+  try {
+    const RecoveredMap recovered = recover_map(path);
+    EXPECT_LE(recovered.map.keyframes.size(), map.keyframes.size());
+    if (difference(recovered.map, map) != "") {
+      EXPECT_FALSE(recovered.lost.empty()) << "lost something silently";
+    }
+    save_map(recovered.map, folder / "recovered.rovigo");
+  } catch (const InputError&) {
+  }
+}
+
+TEST_P(RandomMaps, RoundTrip) {
+  save_map(map_, path_);
+  EXPECT_EQ(difference(load_map(path_), map_), "");
+}
+
+TEST_P(RandomMaps, CutFilesAreRefused) {
+  save_map(map_, path_);
+  const std::string whole = bytes_of(path_);
+  std::mt19937_64 rng(GetParam());
+  for (int i = 0; i < 15; ++i) {
+    put_bytes(path_, whole.substr(0, rng() % whole.size()));
+    EXPECT_THROW(load_map(path_), InputError);
+    expect_recovery_is_sound(path_, map_, folder_);
+  }
+}
+
+TEST_P(RandomMaps, FlippedBitsAreFoundOrHarmless) {
+  save_map(map_, path_);
+  const std::string whole = bytes_of(path_);
+  std::mt19937_64 rng(GetParam());
+  for (int i = 0; i < 150; ++i) {
+    std::string damaged = whole;
+    // Half of them where the structure is: in the headers of pages.
+    std::size_t at = rng() % whole.size();
+    if (i % 2 == 0) at = std::min(at / 4096 * 4096 + rng() % 64, whole.size() - 1);
+    damaged[at] = static_cast<char>(damaged[at] ^ (1 << rng() % 8));
+    put_bytes(path_, damaged);
+    expect_refused_or_same(path_, map_, "bit flipped at byte " + std::to_string(at));
+    if (i % 10 == 0) expect_recovery_is_sound(path_, map_, folder_);
+  }
+}
+
+TEST_P(RandomMaps, OverwrittenStretchesAreFoundOrHarmless) {
+  save_map(map_, path_);
+  const std::string whole = bytes_of(path_);
+  std::mt19937_64 rng(GetParam() + 1000);
+  for (int i = 0; i < 40; ++i) {
+    std::string damaged = whole;
+    const std::size_t at = rng() % whole.size();
+    const std::size_t count = std::min<std::size_t>(rng() % 6000, whole.size() - at);
+    for (std::size_t k = 0; k < count; ++k) damaged[at + k] = static_cast<char>(rng());
+    put_bytes(path_, damaged);
+    expect_refused_or_same(path_, map_, "overwritten at byte " + std::to_string(at));
+    expect_recovery_is_sound(path_, map_, folder_);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomMaps, testing::Range<std::uint64_t>(1, 13));
+
+TEST(KilledWriter, OldOrNewMapOpensWhole) {
+  const ScratchFolder folder;
+  const auto path = folder / "a.rovigo";
+  const SavedMap maps[2] = {random_map(21, 12), random_map(22, 12)};
+  save_map(maps[0], path);
+  std::mt19937_64 rng(7);
+  int seen[2] = {0, 0};
+  for (int i = 0; i < 60; ++i) {
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      for (int k = i;; ++k) save_map(maps[k % 2], path);
+    }
+    ::usleep(static_cast<useconds_t>(rng() % 20000));
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    const SavedMap found = load_map(path);
+    const bool first = difference(found, maps[0]) == "";
+    EXPECT_TRUE(first || difference(found, maps[1]) == "") << "after kill " << i;
+    ++seen[first ? 0 : 1];
+  }
+  EXPECT_GT(seen[0], 0);
+  EXPECT_GT(seen[1], 0);
+}
+
+}  // namespace
+}  // namespace rovigo::maps
