@@ -1,1 +1,256 @@
 #include "sim/scenario.h"
+
+#include "sim/yaml_reader.h"
+
+namespace rovigo::sim {
+
+void CameraNoise::describe(maps::SettingsVisitor& v) {
+  v.real({.name = "depth_sigma_per_m",
+          .help = "Depth sigma is this times depth squared.",
+          .min = 0,
+          .max = 0.1},
+         depth_sigma_per_m);
+  v.real({.name = "disparity_quantum_px",
+          .help = "Step of the disparity; 0 for none.",
+          .min = 0,
+          .max = 2},
+         disparity_quantum_px);
+  v.real({.name = "baseline_m", .help = "Between the two depth imagers.", .min = 0.01, .max = 0.5},
+         baseline_m);
+  v.real({.name = "min_range_m", .help = "Nearer than this: no return.", .min = 0, .max = 5},
+         min_range_m);
+  v.real({.name = "max_range_m", .help = "Farther than this: no return.", .min = 0.5, .max = 50},
+         max_range_m);
+  v.real({.name = "max_incidence_deg",
+          .help = "More grazing than this: no return.",
+          .min = 10,
+          .max = 90},
+         max_incidence_deg);
+  v.real(
+      {.name = "edge_raggedness_px", .help = "How far depth edges are torn.", .min = 0, .max = 3},
+      edge_raggedness_px);
+  v.real({.name = "color_noise_levels",
+          .help = "Sigma of the colour noise in steps of 1/255.",
+          .min = 0,
+          .max = 50},
+         color_noise_levels);
+  v.real({.name = "exposure_s",
+          .help = "Exposure time; turning blurs the image during it.",
+          .min = 0,
+          .max = 0.05},
+         exposure_s);
+  v.flag({.name = "auto_exposure", .help = "Whether the camera adapts to the light."},
+         auto_exposure);
+  v.real({.name = "auto_exposure_time_s",
+          .help = "Time constant of the adaptation.",
+          .min = 0.01,
+          .max = 60},
+         auto_exposure_time_s);
+  v.real({.name = "target_brightness",
+          .help = "Mean brightness the adaptation aims at.",
+          .min = 0.05,
+          .max = 0.95},
+         target_brightness);
+}
+
+void ImuNoise::describe(maps::SettingsVisitor& v) {
+  v.real({.name = "rate_hz", .help = "Samples a second.", .min = 1, .max = 240}, rate_hz);
+  v.real({.name = "gyro_sigma_rad_s", .help = "White noise of each sample.", .min = 0, .max = 1},
+         gyro_sigma_rad_s);
+  v.real({.name = "gyro_bias_max_rad_s",
+          .help = "Each axis' bias is drawn within +- this.",
+          .min = 0,
+          .max = 1},
+         gyro_bias_max_rad_s);
+  v.real({.name = "gyro_walk_rad_s2_sqrt_hz",
+          .help = "Random walk of the gyro's bias.",
+          .min = 0,
+          .max = 0.1},
+         gyro_walk_rad_s2_sqrt_hz);
+  v.real({.name = "accelerometer_sigma_m_s2",
+          .help = "White noise of each sample.",
+          .min = 0,
+          .max = 10},
+         accelerometer_sigma_m_s2);
+  v.real({.name = "accelerometer_bias_max_m_s2",
+          .help = "Each axis' bias is drawn within +- this.",
+          .min = 0,
+          .max = 5},
+         accelerometer_bias_max_m_s2);
+}
+
+void WheelNoise::describe(maps::SettingsVisitor& v) {
+  v.real({.name = "rate_hz", .help = "Samples a second.", .min = 1, .max = 240}, rate_hz);
+  v.real({.name = "scale_error_max",
+          .help = "Share by which speed may be wrong, drawn by seed.",
+          .min = 0,
+          .max = 0.5},
+         scale_error_max);
+  v.real({.name = "track_error_max",
+          .help = "Share by which turn rate may be wrong, by seed.",
+          .min = 0,
+          .max = 0.5},
+         track_error_max);
+  v.integer({.name = "ticks_per_turn",
+             .help = "Encoder ticks in one turn of a wheel.",
+             .min = 8,
+             .max = 1000000},
+            ticks_per_turn);
+  v.real({.name = "slip_events_per_minute",
+          .help = "How often one side's wheels lose grip.",
+          .min = 0,
+          .max = 60},
+         slip_events_per_minute);
+  v.real(
+      {.name = "slip_min", .help = "Least share of motion lost in a slip.", .min = 0, .max = 0.9},
+      slip_min);
+  v.real(
+      {.name = "slip_max", .help = "Largest share of motion lost in a slip.", .min = 0, .max = 0.9},
+      slip_max);
+  v.real({.name = "slip_max_duration_s", .help = "Longest slip.", .min = 0, .max = 10},
+         slip_max_duration_s);
+}
+
+void MotorModel::describe(maps::SettingsVisitor& v) {
+  v.real({.name = "no_load_speed_m_s",
+          .help = "Speed at the rim that no torque is left at.",
+          .min = 0.1,
+          .max = 10},
+         no_load_speed_m_s);
+  v.real({.name = "stall_torque_nm",
+          .help = "Torque of each of the four motors at rest.",
+          .min = 0.01,
+          .max = 50},
+         stall_torque_nm);
+  v.real({.name = "lag_s", .help = "Time constant of the wheel speed loop.", .min = 0, .max = 1},
+         lag_s);
+  v.real({.name = "dead_zone_m_s",
+          .help = "A wheel at rest needs more than this to start.",
+          .min = 0,
+          .max = 0.5},
+         dead_zone_m_s);
+  v.real(
+      {.name = "command_latency_s", .help = "Time a command takes to arrive.", .min = 0, .max = 2},
+      command_latency_s);
+}
+
+void PoseNoise::describe(maps::SettingsVisitor& v) {
+  v.real({.name = "rate_hz", .help = "Poses a second.", .min = 1, .max = 240}, rate_hz);
+  v.real({.name = "sigma_position_m", .help = "White noise of x and y.", .min = 0, .max = 1},
+         sigma_position_m);
+  v.real({.name = "sigma_heading_rad", .help = "White noise of the heading.", .min = 0, .max = 1},
+         sigma_heading_rad);
+  v.real({.name = "latency_s", .help = "Mean age of a pose when it arrives.", .min = 0, .max = 3},
+         latency_s);
+  v.real({.name = "jitter_s", .help = "The age varies uniformly by +- this.", .min = 0, .max = 1},
+         jitter_s);
+}
+
+void LightStep::describe(maps::SettingsVisitor& v) {
+  v.real({.name = "time_s", .help = "When the light changes.", .min = 0, .max = 1e5}, time_s);
+  v.real({.name = "factor",
+          .help = "All light is multiplied by this from then on.",
+          .min = 0,
+          .max = 20},
+         factor);
+}
+
+void Blackout::describe(maps::SettingsVisitor& v) {
+  v.real({.name = "start_s", .help = "When it begins.", .min = 0, .max = 1e5}, start_s);
+  v.real({.name = "duration_s", .help = "How long it lasts.", .min = 0, .max = 1e5}, duration_s);
+  v.text({.name = "kind",
+          .help = "No frames at all, or black ones.",
+          .choices = {"missing", "covered"}},
+         kind);
+}
+
+void Kidnap::describe(maps::SettingsVisitor& v) {
+  v.real({.name = "time_s", .help = "When the rover is carried away.", .min = 0, .max = 1e5},
+         time_s);
+  v.real({.name = "forward_m", .help = "Where to, ahead of where it was.", .min = -100, .max = 100},
+         forward_m);
+  v.real({.name = "left_m", .help = "Where to, left of where it was.", .min = -100, .max = 100},
+         left_m);
+  v.real({.name = "turn_deg", .help = "By how much it is turned.", .min = -180, .max = 180},
+         turn_deg);
+}
+
+namespace {
+
+constexpr std::size_t kMaxEvents = 1000;
+
+template <class Config>
+void read_section(const std::string& file, const YAML::Node& root, const char* name,
+                  Config& config) {
+  if (const YAML::Node node = root[name]) read_settings(file, node, config);
+}
+
+template <class Event>
+void read_events(const std::string& file, const YAML::Node& root, const char* name,
+                 std::vector<Event>& events) {
+  const YAML::Node list = root[name];
+  if (!list) return;
+  if (!list.IsSequence()) fail_at(file, list, std::string(name) + " must be a list of events");
+  if (list.size() > kMaxEvents) {
+    fail_at(file, list,
+            std::string(name) + " holds more than " + std::to_string(kMaxEvents) + " events");
+  }
+  for (const auto& node : list) read_settings(file, node, events.emplace_back());
+}
+
+void require_ordered(const std::string& file, const YAML::Node& root, const char* section,
+                     const char* low_name, double low, const char* high_name, double high) {
+  if (low <= high) return;
+  fail_at(file, root[section],
+          std::string(section) + ": " + low_name + " must not exceed " + high_name);
+}
+
+}  // namespace
+
+Scenario parse_scenario(const std::string& yaml, const std::string& file) {
+  const YAML::Node root = parse_yaml(yaml, file);
+  require_known_keys(
+      file, root,
+      {"name", "camera", "imu", "wheels", "motor", "pose", "light_steps", "blackouts", "kidnaps"});
+  Scenario s;
+  s.name = std::filesystem::path(file).stem().string();
+  if (const YAML::Node name = root["name"]) {
+    if (!name.IsScalar()) fail_at(file, name, "name must be a single value");
+    s.name = name.Scalar();
+  }
+  read_section(file, root, "camera", s.camera);
+  read_section(file, root, "imu", s.imu);
+  read_section(file, root, "wheels", s.wheels);
+  read_section(file, root, "motor", s.motor);
+  read_section(file, root, "pose", s.pose);
+  read_events(file, root, "light_steps", s.light_steps);
+  read_events(file, root, "blackouts", s.blackouts);
+  read_events(file, root, "kidnaps", s.kidnaps);
+  require_ordered(file, root, "camera", "min_range_m", s.camera.min_range_m, "max_range_m",
+                  s.camera.max_range_m);
+  require_ordered(file, root, "wheels", "slip_min", s.wheels.slip_min, "slip_max",
+                  s.wheels.slip_max);
+  return s;
+}
+
+Scenario load_scenario(const std::filesystem::path& file) {
+  return parse_scenario(read_text(file), file.string());
+}
+
+Scenario ideal_scenario() {
+  Scenario s;
+  s.name = "ideal";
+  s.camera.depth_sigma_per_m = 0.0;
+  s.camera.disparity_quantum_px = 0.0;
+  s.camera.edge_raggedness_px = 0.0;
+  s.camera.color_noise_levels = 0.0;
+  s.camera.exposure_s = 0.0;
+  s.camera.auto_exposure = false;
+  s.imu.gyro_sigma_rad_s = s.imu.gyro_bias_max_rad_s = s.imu.gyro_walk_rad_s2_sqrt_hz = 0.0;
+  s.imu.accelerometer_sigma_m_s2 = s.imu.accelerometer_bias_max_m_s2 = 0.0;
+  s.wheels.scale_error_max = s.wheels.track_error_max = s.wheels.slip_events_per_minute = 0.0;
+  s.pose.sigma_position_m = s.pose.sigma_heading_rad = s.pose.latency_s = s.pose.jitter_s = 0.0;
+  return s;
+}
+
+}  // namespace rovigo::sim

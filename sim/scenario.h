@@ -1,16 +1,117 @@
 #pragma once
 // What a scenario file changes: sensor noise, faults, disturbances. Defaults: design.md's figures.
+// sim/scenarios/default.yaml shows every key with its meaning.
 
 #include <filesystem>
 #include <string>
+#include <vector>
+
+#include "maps/settings.h"
 
 namespace rovigo::sim {
 
+/// RGB-D camera after an active stereo sensor: errors live in disparity, hence grow as z^2.
+struct CameraNoise {
+  double depth_sigma_per_m = 0.0022;   ///< sigma = this * z^2 (1/m)
+  double disparity_quantum_px = 0.08;  ///< 0: not quantised
+  double baseline_m = 0.095;
+  double min_range_m = 0.3;
+  double max_range_m = 6.0;
+  double max_incidence_deg = 80.0;  ///< more grazing than this: no return
+  double edge_raggedness_px = 1.0;  ///< how far a depth edge may be torn, 0 .. 3
+  double color_noise_levels = 2.5;  ///< sigma, in steps of 1/255
+  double exposure_s = 0.008;        ///< what turning blurs
+  bool auto_exposure = true;
+  double auto_exposure_time_s = 0.4;
+  double target_brightness = 0.42;  ///< mean that auto exposure aims at, 0 .. 1
+  void describe(maps::SettingsVisitor& v);
+};
+
+struct ImuNoise {
+  double rate_hz = 100.0;
+  double gyro_sigma_rad_s = 0.003;
+  double gyro_bias_max_rad_s = 0.01;  ///< each axis drawn by seed within +- this
+  double gyro_walk_rad_s2_sqrt_hz = 1e-4;
+  double accelerometer_sigma_m_s2 = 0.02;
+  double accelerometer_bias_max_m_s2 = 0.1;
+  void describe(maps::SettingsVisitor& v);
+};
+
+struct WheelNoise {
+  double rate_hz = 48.0;
+  double scale_error_max = 0.02;  ///< of speed, drawn by seed within +- this
+  double track_error_max = 0.03;  ///< of turn rate, likewise
+  int ticks_per_turn = 878;
+  double slip_events_per_minute = 1.0;
+  double slip_min = 0.2;  ///< share of one side's motion that is lost
+  double slip_max = 0.5;
+  double slip_max_duration_s = 0.8;
+  void describe(maps::SettingsVisitor& v);
+};
+
+struct MotorModel {
+  double no_load_speed_m_s = 1.0;  ///< at the rim
+  double stall_torque_nm = 2.0;    ///< of each of the four motors
+  double lag_s = 0.04;             ///< first-order lag of the wheel speed loop
+  double dead_zone_m_s = 0.04;     ///< a wheel at rest needs more than this to start
+  double command_latency_s = 0.0;
+  void describe(maps::SettingsVisitor& v);
+};
+
+/// For `--pose perturbed`: the truth as an estimator might deliver it. Applied by app.
+struct PoseNoise {
+  double rate_hz = 30.0;
+  double sigma_position_m = 0.01;
+  double sigma_heading_rad = 0.01;
+  double latency_s = 0.05;
+  double jitter_s = 0.01;
+  void describe(maps::SettingsVisitor& v);
+};
+
+/// From `time_s` on all light is multiplied by `factor`.
+struct LightStep {
+  double time_s = 0.0;
+  double factor = 1.0;
+  void describe(maps::SettingsVisitor& v);
+};
+
+/// The camera delivers nothing (or, covered, black frames without depth) for a while.
+struct Blackout {
+  double start_s = 0.0;
+  double duration_s = 0.0;
+  std::string kind = "missing";  ///< "missing" or "covered"
+  void describe(maps::SettingsVisitor& v);
+};
+
+/// Somebody carries the rover away: it is at rest elsewhere the next moment.
+struct Kidnap {
+  double time_s = 0.0;
+  double forward_m = 0.0;
+  double left_m = 0.0;
+  double turn_deg = 0.0;
+  void describe(maps::SettingsVisitor& v);
+};
+
+/// Times are seconds since the recording's first moment.
 struct Scenario {
   std::string name = "default";
+  CameraNoise camera;
+  ImuNoise imu;
+  WheelNoise wheels;
+  MotorModel motor;
+  PoseNoise pose;
+  std::vector<LightStep> light_steps;
+  std::vector<Blackout> blackouts;
+  std::vector<Kidnap> kidnaps;
 };
 
 /// Throws InputError naming file, line, key, value and limit.
 Scenario load_scenario(const std::filesystem::path& file);
+
+/// The same from text; `file` is used in messages only.
+Scenario parse_scenario(const std::string& yaml, const std::string& file);
+
+/// The default scenario without any noise, slip or fault.
+Scenario ideal_scenario();
 
 }  // namespace rovigo::sim

@@ -1,5 +1,6 @@
 #pragma once
 // A world as an SDF file describes it: boxes, cylinders and planes with colours and textures.
+// sim/worlds/README.md tells which part of SDF is understood and how textures are named.
 
 #include <filesystem>
 #include <memory>
@@ -22,6 +23,8 @@ class World {
   static World random_office(std::uint64_t seed);
   /// Walls raised from the occupied cells of a grid, for maps that came without a world.
   static World from_grid(const maps::OccupancyGrid& grid, double wall_height_m);
+  /// A world put together in code (tests).
+  explicit World(WorldModel model);
 
   const std::string& name() const;
   TPose2D start() const;  ///< world_from_base where rovers are put down by default

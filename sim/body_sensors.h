@@ -1,0 +1,58 @@
+#pragma once
+// Gyro, accelerometer and wheel encoders: what they make of the body's true motion.
+
+#include <mrpt/obs/CObservationIMU.h>
+#include <mrpt/obs/CObservationOdometry.h>
+
+#include <Eigen/Core>
+
+#include "maps/robot_model.h"
+#include "sim/random.h"
+#include "sim/rover.h"
+#include "sim/scenario.h"
+
+namespace rovigo::sim {
+
+/// Sits in base_link. Biases are drawn once by seed; the gyro's walks slowly.
+class ImuSensor {
+ public:
+  ImuSensor(const ImuNoise& noise, std::uint64_t seed);
+
+  /// One sample over the interval since the previous one: mean turn rate is taken as the present
+  /// one, specific force as the change of velocity over `interval_s`, minus gravity.
+  mrpt::obs::CObservationIMU::Ptr sample(const BodyState& state, double interval_s);
+
+  /// Forgets the previous velocity (after the rover was carried).
+  void reset_motion(const BodyState& state) { previous_velocity_ = state.velocity; }
+
+ private:
+  ImuNoise noise_;
+  RandomStream random_;
+  Eigen::Vector3d gyro_bias_;
+  Eigen::Vector3d accelerometer_bias_;
+  Eigen::Vector3d previous_velocity_ = Eigen::Vector3d::Zero();
+};
+
+/// Counts ticks on both sides and integrates them with the nominal radius and the calibrated
+/// track, as the rover's firmware does. The true radius and track differ by the scale errors.
+class WheelSensor {
+ public:
+  WheelSensor(const WheelNoise& noise, const maps::RobotModel& robot, std::uint64_t seed);
+
+  /// Turning of the wheels during one physics step, as the encoders see it.
+  void advance(double left_rad, double right_rad);
+  mrpt::obs::CObservationOdometry::Ptr sample(double interval_s);
+
+ private:
+  WheelNoise noise_;
+  maps::RobotModel robot_;
+  double speed_scale_ = 1.0;
+  double turn_scale_ = 1.0;
+  double left_rad_ = 0.0;
+  double right_rad_ = 0.0;
+  long left_ticks_ = 0;
+  long right_ticks_ = 0;
+  TPose2D odom_from_base_;
+};
+
+}  // namespace rovigo::sim

@@ -1,0 +1,293 @@
+#include "sim/rover.h"
+
+#include <btBulletDynamicsCommon.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <vector>
+
+namespace rovigo::sim {
+namespace {
+
+constexpr int kFloor = 1;
+constexpr int kObstacle = 2;
+constexpr int kWheel = 4;
+constexpr int kBody = 8;
+
+constexpr double kGravity = 9.81;
+constexpr double kMassKg = 6.5;
+constexpr double kWheelMassKg = 0.3;
+constexpr double kCenterOfMassM = 0.09;   // above the floor
+constexpr double kBodyClearanceM = 0.03;  // lower things are rolled over
+constexpr double kFlushM = 0.01;          // lower still: a carpet, no step at all
+constexpr double kTireFriction = 0.9;
+// Along its axle a tyre scrubs: the side force grows with the speed of scrubbing up to a limit.
+// Plain Coulomb friction would let the rover slide sideways freely as soon as all four wheels
+// scrub, which they do in every turn.
+constexpr double kScrubStiffnessNsPerM = 80.0;
+constexpr double kScrubFriction = 0.75;
+constexpr int kSolverIterations = 30;
+constexpr int kRestStepsBetweenContacts = 24;  // 0.1 s: a bounce is one contact, not ten
+
+btVector3 to_bullet(const Eigen::Vector3d& v) {
+  return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
+}
+Eigen::Vector3d to_eigen(const btVector3& v) {
+  return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
+}
+
+btTransform to_bullet(const Eigen::Isometry3d& m) {
+  const Eigen::Quaterniond q(m.linear());
+  return btTransform(btQuaternion(static_cast<btScalar>(q.x()), static_cast<btScalar>(q.y()),
+                                  static_cast<btScalar>(q.z()), static_cast<btScalar>(q.w())),
+                     to_bullet(Eigen::Vector3d(m.translation())));
+}
+
+Eigen::Isometry3d upright(const TPose2D& pose, double z) {
+  Eigen::Isometry3d m = Eigen::Isometry3d::Identity();
+  m.linear() = Eigen::AngleAxisd(pose.phi, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  m.translation() = Eigen::Vector3d(pose.x, pose.y, z);
+  return m;
+}
+
+/// Bullet picks its own friction directions; a wheel's only one is where it rolls. They are set
+/// between finding contacts and solving them.
+class RollingWorld final : public btDiscreteDynamicsWorld {
+ public:
+  using btDiscreteDynamicsWorld::btDiscreteDynamicsWorld;
+  const btCollisionObject* chassis = nullptr;
+
+ private:
+  void solveConstraints(btContactSolverInfo& info) override {
+    const btVector3 axle = chassis->getWorldTransform().getBasis().getColumn(1);
+    for (int i = 0; i < getDispatcher()->getNumManifolds(); ++i) {
+      btPersistentManifold* manifold = getDispatcher()->getManifoldByIndexInternal(i);
+      if (manifold->getBody0() == chassis || manifold->getBody1() == chassis) continue;
+      for (int k = 0; k < manifold->getNumContacts(); ++k) {
+        btManifoldPoint& point = manifold->getContactPoint(k);
+        point.m_lateralFrictionDir1 = axle.cross(point.m_normalWorldOnB).normalized();
+        point.m_contactPointFlags |= BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED;
+      }
+    }
+    btDiscreteDynamicsWorld::solveConstraints(info);
+  }
+};
+
+double top_of(const Solid& solid) {
+  double top = -1e9;
+  for (const auto& p : corners_of(solid)) top = std::max(top, p.z());
+  return top;
+}
+
+}  // namespace
+
+struct RoverBody::Impl {
+  Impl(const WorldModel& model, const maps::RobotModel& robot, const TPose2D& pose)
+      : robot_(robot),
+        dispatcher_(&configuration_),
+        world_(&dispatcher_, &broadphase_, &solver_, &configuration_) {
+    world_.setGravity(btVector3(0, 0, static_cast<btScalar>(-kGravity)));
+    world_.getSolverInfo().m_numIterations = kSolverIterations;
+    world_.getSolverInfo().m_solverMode =
+        SOLVER_SIMD | SOLVER_USE_WARMSTARTING | SOLVER_ENABLE_FRICTION_DIRECTION_CACHING;
+    for (const auto& solid : model.solids) add_static(solid);
+    build_rover(pose);
+  }
+
+  ~Impl() {
+    for (auto& hinge : hinges_) world_.removeConstraint(hinge.get());
+    for (auto& body : bodies_) world_.removeRigidBody(body.get());
+  }
+
+  void add_static(const Solid& solid) {
+    if (!solid.touchable) return;
+    const double top = top_of(solid);
+    const bool is_plane = solid.kind == Solid::Kind::kPlane;
+    if (!is_plane && top <= kFlushM) return;
+    Eigen::Isometry3d frame = solid.world_from_solid;
+    std::unique_ptr<btCollisionShape> shape;
+    if (is_plane) {  // a slab below the plane: finite, and nothing falls through it
+      constexpr double kSlabM = 0.5;
+      frame.translation() -= 0.5 * kSlabM * frame.linear().col(2);
+      shape = std::make_unique<btBoxShape>(
+          to_bullet(Eigen::Vector3d(solid.size.x() / 2, solid.size.y() / 2, kSlabM / 2)));
+    } else if (solid.kind == Solid::Kind::kBox) {
+      shape = std::make_unique<btBoxShape>(to_bullet(Eigen::Vector3d(solid.size / 2)));
+    } else {
+      shape = std::make_unique<btCylinderShapeZ>(to_bullet(Eigen::Vector3d(solid.size / 2)));
+    }
+    const bool is_floor = is_plane || top <= kBodyClearanceM;
+    add_body(0.0, std::move(shape), to_bullet(frame), btVector3(0, 0, 0),
+             is_floor ? kFloor : kObstacle, is_floor ? kWheel : kBody);
+  }
+
+  btRigidBody* add_body(double mass, std::unique_ptr<btCollisionShape> shape,
+                        const btTransform& frame, const btVector3& inertia, int group, int mask) {
+    btRigidBody::btRigidBodyConstructionInfo info(static_cast<btScalar>(mass), nullptr, shape.get(),
+                                                  inertia);
+    info.m_startWorldTransform = frame;
+    info.m_friction = group == kWheel ? static_cast<btScalar>(kTireFriction) : btScalar(1);
+    bodies_.push_back(std::make_unique<btRigidBody>(info));
+    shapes_.push_back(std::move(shape));
+    world_.addRigidBody(bodies_.back().get(), group, mask);
+    return bodies_.back().get();
+  }
+
+  void build_rover(const TPose2D& pose) {
+    const double height = robot_.body_height_m - kBodyClearanceM;
+    auto box = std::make_unique<btBoxShape>(to_bullet(
+        Eigen::Vector3d(robot_.footprint_length_m / 2, robot_.footprint_width_m / 2, height / 2)));
+    auto hull = std::make_unique<btCompoundShape>();
+    hull->addChildShape(to_bullet(upright({}, kBodyClearanceM + height / 2 - kCenterOfMassM)),
+                        box.get());
+    const double mass = kMassKg - 4.0 * kWheelMassKg;
+    btVector3 inertia;
+    box->calculateLocalInertia(static_cast<btScalar>(mass), inertia);
+    shapes_.push_back(std::move(box));
+    chassis_ = add_body(mass, std::move(hull), to_bullet(upright(pose, kCenterOfMassM)), inertia,
+                        kBody, kObstacle);
+    chassis_->setActivationState(DISABLE_DEACTIVATION);
+    world_.chassis = chassis_;
+    for (const int x : {1, -1}) {
+      for (const int y : {1, -1}) add_wheel(pose, x, y);
+    }
+  }
+
+  /// Order: front left, front right, rear left, rear right.
+  void add_wheel(const TPose2D& pose, int x, int y) {
+    const double r = robot_.wheel_radius_m;
+    const Eigen::Vector3d center(x * robot_.wheel_base_m / 2, y * robot_.track_width_m / 2, r);
+    auto sphere = std::make_unique<btSphereShape>(static_cast<btScalar>(r));
+    btVector3 inertia;
+    sphere->calculateLocalInertia(static_cast<btScalar>(kWheelMassKg), inertia);
+    Eigen::Isometry3d frame = upright(pose, 0.0);
+    frame.translation() = frame * center;
+    btRigidBody* wheel =
+        add_body(kWheelMassKg, std::move(sphere), to_bullet(frame), inertia, kWheel, kFloor);
+    wheel->setActivationState(DISABLE_DEACTIVATION);
+    const btVector3 axle(0, 1, 0);
+    btVector3 on_chassis = to_bullet(center);
+    on_chassis.setZ(on_chassis.z() - static_cast<btScalar>(kCenterOfMassM));
+    // The wheel is body A: with the chassis there, Bullet's motor turns the other way.
+    auto hinge = std::make_unique<btHingeConstraint>(*wheel, *chassis_, btVector3(0, 0, 0),
+                                                     on_chassis, axle, axle);
+    world_.addConstraint(hinge.get(), true);
+    hinges_.push_back(std::move(hinge));
+    wheels_.push_back(wheel);
+  }
+
+  double wheel_speed(std::size_t i) const {
+    const btVector3 axle = chassis_->getWorldTransform().getBasis().getColumn(1);
+    return static_cast<double>(
+        (wheels_[i]->getAngularVelocity() - chassis_->getAngularVelocity()).dot(axle));
+  }
+
+  /// Side forces of the four tyres, on the chassis at the wheels' contacts with the floor.
+  void apply_scrub() {
+    const btTransform& frame = chassis_->getWorldTransform();
+    const btVector3 axle = frame.getBasis().getColumn(1);
+    const auto limit = static_cast<btScalar>(kScrubFriction * kMassKg * kGravity / 4.0);
+    for (const btRigidBody* wheel : wheels_) {
+      btVector3 foot = wheel->getWorldTransform().getOrigin();
+      foot.setZ(foot.z() - static_cast<btScalar>(robot_.wheel_radius_m));
+      const btVector3 arm = foot - frame.getOrigin();
+      const btScalar scrub = chassis_->getVelocityInLocalPoint(arm).dot(axle);
+      const btScalar force = -static_cast<btScalar>(kScrubStiffnessNsPerM) * scrub;
+      chassis_->applyForce(axle * btMax(-limit, btMin(limit, force)), arm);
+    }
+  }
+
+  void count_contacts() {
+    ++step_;
+    for (int i = 0; i < dispatcher_.getNumManifolds(); ++i) {
+      const btPersistentManifold* manifold = dispatcher_.getManifoldByIndexInternal(i);
+      const btCollisionObject* other = nullptr;
+      if (manifold->getBody0() == chassis_) other = manifold->getBody1();
+      if (manifold->getBody1() == chassis_) other = manifold->getBody0();
+      if (!other || !is_touching(*manifold)) continue;
+      const auto last = last_touch_.find(other);
+      if (last == last_touch_.end() || step_ - last->second > kRestStepsBetweenContacts) {
+        ++contact_events_;
+      }
+      last_touch_[other] = step_;
+    }
+  }
+
+  static bool is_touching(const btPersistentManifold& manifold) {
+    for (int i = 0; i < manifold.getNumContacts(); ++i) {
+      if (manifold.getContactPoint(i).getDistance() <= 0) return true;
+    }
+    return false;
+  }
+
+  maps::RobotModel robot_;
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_;
+  btDbvtBroadphase broadphase_;
+  btSequentialImpulseConstraintSolver solver_;
+  RollingWorld world_;
+  std::vector<std::unique_ptr<btCollisionShape>> shapes_;
+  std::vector<std::unique_ptr<btRigidBody>> bodies_;
+  std::vector<std::unique_ptr<btHingeConstraint>> hinges_;
+  btRigidBody* chassis_ = nullptr;
+  std::vector<btRigidBody*> wheels_;
+  long step_ = 0;
+  int contact_events_ = 0;
+  std::map<const btCollisionObject*, long> last_touch_;
+};
+
+RoverBody::RoverBody(const WorldModel& world, const maps::RobotModel& robot,
+                     const TPose2D& world_from_base)
+    : impl_(std::make_unique<Impl>(world, robot, world_from_base)) {}
+RoverBody::~RoverBody() = default;
+
+void RoverBody::step(double dt_s, const SideDrive& left, const SideDrive& right) {
+  for (std::size_t i = 0; i < impl_->hinges_.size(); ++i) {
+    const SideDrive& drive = i % 2 == 0 ? left : right;
+    impl_->hinges_[i]->enableAngularMotor(true, static_cast<btScalar>(drive.speed_rad_s),
+                                          static_cast<btScalar>(drive.torque_limit_nm * dt_s));
+  }
+  impl_->apply_scrub();
+  impl_->world_.stepSimulation(static_cast<btScalar>(dt_s), 0);  // exactly one step
+  impl_->count_contacts();
+}
+
+BodyState RoverBody::state() const {
+  const btTransform& frame = impl_->chassis_->getWorldTransform();
+  BodyState s;
+  const btQuaternion q = frame.getRotation();
+  s.world_from_base.linear() =
+      Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized().toRotationMatrix();
+  const Eigen::Vector3d base_in_body(0.0, 0.0, -kCenterOfMassM);
+  const Eigen::Vector3d arm = s.world_from_base.linear() * base_in_body;
+  s.world_from_base.translation() = to_eigen(frame.getOrigin()) + arm;
+  s.angular_velocity = to_eigen(impl_->chassis_->getAngularVelocity());
+  s.velocity = to_eigen(impl_->chassis_->getLinearVelocity()) + s.angular_velocity.cross(arm);
+  return s;
+}
+
+double RoverBody::left_speed_rad_s() const {
+  return 0.5 * (impl_->wheel_speed(0) + impl_->wheel_speed(2));
+}
+double RoverBody::right_speed_rad_s() const {
+  return 0.5 * (impl_->wheel_speed(1) + impl_->wheel_speed(3));
+}
+int RoverBody::contact_events() const { return impl_->contact_events_; }
+
+void RoverBody::place(const TPose2D& world_from_base) {
+  const auto put = [](btRigidBody* body, const btTransform& frame) {
+    body->setWorldTransform(frame);
+    body->setInterpolationWorldTransform(frame);
+    body->setLinearVelocity(btVector3(0, 0, 0));
+    body->setAngularVelocity(btVector3(0, 0, 0));
+    body->clearForces();
+  };
+  const btTransform old_inverse = impl_->chassis_->getWorldTransform().inverse();
+  const btTransform target = to_bullet(upright(world_from_base, kCenterOfMassM));
+  for (auto* wheel : impl_->wheels_)
+    put(wheel, target * (old_inverse * wheel->getWorldTransform()));
+  put(impl_->chassis_, target);
+}
+
+}  // namespace rovigo::sim

@@ -1,0 +1,213 @@
+#include "sim/simulator.h"
+
+#include <mrpt/system/datetime.h>
+
+#include <cmath>
+#include <deque>
+
+#include "sim/body_sensors.h"
+#include "sim/depth_camera.h"
+#include "sim/drive_train.h"
+#include "sim/rover.h"
+#include "sim/world_model.h"
+
+namespace rovigo::sim {
+namespace {
+
+constexpr double kFirstTimeS = 1.0;  // MRPT takes 0 for "no time"
+constexpr int kSettleSteps = 48;     // 0.2 s for the wheels to take the weight
+constexpr double kCameraForwardM = 0.12;
+constexpr double kCameraHeightM = 0.25;
+
+enum Stream : std::uint64_t { kImuStream = 10, kWheelStream, kSlipStream, kCameraStream };
+
+mrpt::poses::CPose3D to_mrpt(const Eigen::Isometry3d& m) {
+  mrpt::math::CMatrixDouble44 matrix;
+  matrix.asEigen() = m.matrix();
+  return mrpt::poses::CPose3D(matrix);
+}
+
+SensorRig make_rig() {
+  SensorRig rig;
+  rig.camera.ncols = 640;
+  rig.camera.nrows = 480;
+  rig.camera.setIntrinsicParamsFromValues(460.0, 460.0, 319.5, 239.5);
+  rig.camera.cameraName = "camera";
+  // The optical frame (x right, y down, z forward) on a level camera that looks ahead.
+  Eigen::Isometry3d base_from_camera = Eigen::Isometry3d::Identity();
+  base_from_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  base_from_camera.translation() << kCameraForwardM, 0.0, kCameraHeightM;
+  rig.base_from_camera = to_mrpt(base_from_camera);
+  return rig;
+}
+
+/// Tells at which physics steps a sensor of a given rate is due: the first step at or after each
+/// multiple of its period, so that stamps are exact.
+class Timer {
+ public:
+  explicit Timer(double rate_hz) : steps_per_sample_(1.0 / (rate_hz * Simulator::kStepS)) {}
+  bool is_due(long step) {
+    if (static_cast<double>(step) + 1e-9 < static_cast<double>(count_) * steps_per_sample_) {
+      return false;
+    }
+    ++count_;
+    interval_s_ = static_cast<double>(step - last_step_) * Simulator::kStepS;
+    last_step_ = step;
+    return true;
+  }
+  /// Between the last two samples; the nominal one at the first.
+  double interval_s() const {
+    return interval_s_ > 0.0 ? interval_s_ : steps_per_sample_ * Simulator::kStepS;
+  }
+  std::uint64_t index() const { return count_ - 1; }
+
+ private:
+  double steps_per_sample_;
+  std::uint64_t count_ = 0;
+  long last_step_ = 0;
+  double interval_s_ = 0.0;
+};
+
+}  // namespace
+
+struct Simulator::Impl {
+  /// Either ready, or a shot that is rendered when somebody asks for it.
+  struct Pending {
+    double time_s = 0.0;
+    mrpt::obs::CObservation::Ptr ready;
+    Shot shot;
+  };
+
+  Impl(const World& w, const SimulatorOptions& o)
+      : world(w),
+        options(o),
+        rig(make_rig()),
+        body(w.model(), o.robot, o.world_from_base),
+        drive(o.scenario.motor, o.scenario.wheels, o.robot, derive_seed(o.seed, kSlipStream)),
+        imu(o.scenario.imu, derive_seed(o.seed, kImuStream)),
+        wheels(o.scenario.wheels, o.robot, derive_seed(o.seed, kWheelStream)),
+        imu_timer(o.scenario.imu.rate_hz),
+        wheel_timer(o.scenario.wheels.rate_hz),
+        camera_timer(o.camera_rate_hz) {
+    if (options.camera_enabled) {
+      camera = std::make_unique<DepthCamera>(world.model(), options.scenario.camera, rig.camera,
+                                             derive_seed(options.seed, kCameraStream));
+    }
+    const SideDrive hold{0.0, options.scenario.motor.stall_torque_nm};
+    for (int i = 0; i < kSettleSteps; ++i) body.step(kStepS, hold, hold);
+    settled_contacts = body.contact_events();
+    imu.reset_motion(body.state());
+    update_truth();
+    sense();
+  }
+
+  double time_s() const { return kFirstTimeS + static_cast<double>(step_index) * kStepS; }
+  /// Since the recording's first moment, as scenarios count.
+  double elapsed_s() const { return static_cast<double>(step_index) * kStepS; }
+
+  void step(const TTwist2D& command) {
+    const auto out =
+        drive.step(elapsed_s(), kStepS, command, body.left_speed_rad_s(), body.right_speed_rad_s());
+    body.step(kStepS, out.left, out.right);
+    wheels.advance(body.left_speed_rad_s() * kStepS / out.left_grip,
+                   body.right_speed_rad_s() * kStepS / out.right_grip);
+    ++step_index;
+    apply_kidnaps();
+    update_truth();
+    sense();
+  }
+
+  void apply_kidnaps() {
+    const auto& kidnaps = options.scenario.kidnaps;
+    while (next_kidnap < kidnaps.size() && kidnaps[next_kidnap].time_s <= elapsed_s()) {
+      const Kidnap& k = kidnaps[next_kidnap++];
+      const auto& p = truth.world_from_base;
+      body.place(maps::compose(TPose2D(p.x(), p.y(), p.yaw()),
+                               TPose2D(k.forward_m, k.left_m, k.turn_deg * maps::kPi / 180.0)));
+      imu.reset_motion(body.state());
+    }
+  }
+
+  void update_truth() {
+    state = body.state();
+    truth.world_from_base = to_mrpt(state.world_from_base);
+    const Eigen::Matrix3d base_from_world = state.world_from_base.linear().transpose();
+    const Eigen::Vector3d v = base_from_world * state.velocity;
+    truth.twist = TTwist2D(v.x(), v.y(), (base_from_world * state.angular_velocity).z());
+    truth.contact_events = body.contact_events() - settled_contacts;
+  }
+
+  void sense() {
+    if (imu_timer.is_due(step_index)) add(imu.sample(state, imu_timer.interval_s()));
+    if (wheel_timer.is_due(step_index)) add(wheels.sample(wheel_timer.interval_s()));
+    if (camera && camera_timer.is_due(step_index)) add_shot();
+  }
+
+  void add(const mrpt::obs::CObservation::Ptr& observation) {
+    observation->timestamp = mrpt::Clock::fromDouble(time_s());
+    pending.push_back({time_s(), observation, {}});
+  }
+
+  void add_shot() {
+    Pending p;
+    p.time_s = time_s();
+    p.shot.index = camera_timer.index();
+    p.shot.world_from_camera = truth.world_from_base + rig.base_from_camera;
+    p.shot.yaw_rate_rad_s = truth.twist.omega;
+    p.shot.interval_s = camera_timer.interval_s();
+    for (const auto& s : options.scenario.light_steps) {
+      if (elapsed_s() >= s.time_s) p.shot.light = s.factor;
+    }
+    for (const auto& b : options.scenario.blackouts) {
+      if (elapsed_s() < b.start_s || elapsed_s() >= b.start_s + b.duration_s) continue;
+      if (b.kind == "missing") return;
+      p.shot.covered = true;
+    }
+    pending.push_back(std::move(p));
+  }
+
+  mrpt::obs::CObservation::Ptr develop(const Pending& p) {
+    auto scan = camera->take(p.shot);
+    scan->timestamp = mrpt::Clock::fromDouble(p.time_s);
+    // MRPT's sensor pose looks along +x; a level camera's is plain.
+    scan->sensorPose = mrpt::poses::CPose3D(kCameraForwardM, 0.0, kCameraHeightM, 0.0, 0.0, 0.0);
+    return scan;
+  }
+
+  World world;
+  SimulatorOptions options;
+  SensorRig rig;
+  RoverBody body;
+  DriveTrain drive;
+  ImuSensor imu;
+  WheelSensor wheels;
+  std::unique_ptr<DepthCamera> camera;
+  Timer imu_timer;
+  Timer wheel_timer;
+  Timer camera_timer;
+  BodyState state;
+  Truth truth;
+  std::deque<Pending> pending;
+  long step_index = 0;
+  int settled_contacts = 0;
+  std::size_t next_kidnap = 0;
+};
+
+Simulator::Simulator(const World& world, const SimulatorOptions& options)
+    : impl_(std::make_unique<Impl>(world, options)) {}
+Simulator::~Simulator() = default;
+
+void Simulator::step(const TTwist2D& command) { impl_->step(command); }
+double Simulator::time_s() const { return impl_->time_s(); }
+const Truth& Simulator::truth() const { return impl_->truth; }
+const SensorRig& Simulator::rig() const { return impl_->rig; }
+
+std::vector<mrpt::obs::CObservation::Ptr> Simulator::take_observations() {
+  std::vector<mrpt::obs::CObservation::Ptr> out;
+  out.reserve(impl_->pending.size());
+  for (const auto& p : impl_->pending) out.push_back(p.ready ? p.ready : impl_->develop(p));
+  impl_->pending.clear();
+  return out;
+}
+
+}  // namespace rovigo::sim
