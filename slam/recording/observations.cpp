@@ -26,6 +26,15 @@ double seconds_of(const mrpt::obs::CObservation& observation) {
   return static_cast<double>(ticks) / kTicksPerSecond;
 }
 
+std::string time_text(const mrpt::obs::CObservation& observation) {
+  constexpr long long kTicks = 10000000;
+  const long long ticks = observation.timestamp.time_since_epoch().count() - kEpochTicks;
+  const long long seconds = ticks / kTicks - (ticks % kTicks < 0 ? 1 : 0);
+  std::string decimals = std::to_string(ticks - seconds * kTicks);
+  decimals.insert(0, 7 - decimals.size(), '0');
+  return std::to_string(seconds) + '.' + decimals;
+}
+
 mrpt::obs::CObservationIMU::Ptr make_imu_observation(const ImuSample& sample) {
   auto imu = mrpt::obs::CObservationIMU::Create();
   imu->sensorLabel = "imu";

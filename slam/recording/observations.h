@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <string>
 
 #include "maps/geometry.h"
 #include "slam/rig.h"
@@ -18,6 +19,8 @@ namespace rovigo::slam {
 /// that a time written and read again would lose a tick).
 mrpt::Clock::time_point timestamp_from_seconds(double time_s);
 double seconds_of(const mrpt::obs::CObservation& observation);
+/// The time in seconds with all seven decimals, exact where a double is not.
+std::string time_text(const mrpt::obs::CObservation& observation);
 
 /// A gyro and accelerometer sample in base_link: rad/s; specific force in m/s^2 (+9.81 up at rest).
 struct ImuSample {

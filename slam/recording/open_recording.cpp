@@ -1,8 +1,22 @@
+#include <algorithm>
+#include <cctype>
+
 #include "maps/error.h"
+#include "slam/recording/rawlog_reader.h"
 #include "slam/recording/recording.h"
 #include "slam/recording/tum_reader.h"
 
 namespace rovigo::slam {
+namespace {
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+}  // namespace
 
 std::unique_ptr<RecordingReader> open_recording(const std::filesystem::path& path,
                                                 const OpenOptions& options) {
@@ -11,8 +25,16 @@ std::unique_ptr<RecordingReader> open_recording(const std::filesystem::path& pat
     throw maps::InputError(path.string() + ": there is no such file or folder");
   }
   if (std::filesystem::is_directory(path, error)) return open_tum_directory(path, options);
-  throw maps::InputError(path.string() +
-                         ": not a recording; a .rawlog file or a TUM directory is expected");
+  if (!std::filesystem::is_regular_file(path, error)) {
+    throw maps::InputError(path.string() +
+                           ": neither a file nor a folder; give a .rawlog or a TUM directory");
+  }
+  if (lower_extension(path) == ".bag") {
+    throw maps::InputError(path.string() +
+                           ": ROS bags are not read by this version yet; convert it to a TUM "
+                           "directory (rgb.txt, depth.txt and their images)");
+  }
+  return open_rawlog(path, options);
 }
 
 }  // namespace rovigo::slam
