@@ -60,7 +60,7 @@ TEST_P(ShippedRoute, KeepsItsDistanceFromEveryObstacle) {
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedRoute,
                          testing::Values("lab_tour", "lab_short", "corridor_out_and_back"),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& test) { return test.param; });
 
 TEST(Route, AnUnknownKeyIsRefusedWithItsLineAndTheNearestValidKey) {
   try {
