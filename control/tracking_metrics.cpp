@@ -86,7 +86,7 @@ DriveMetrics measure(const DriveLog& log, const planning::Trajectory& planned, c
     if (!planned.points.empty()) cross.add(cross_track_error_m(planned, position));
     along_track.add(along(step.reference.pose, step.true_pose));
     heading.add(wrap_angle(step.true_pose.phi - step.reference.pose.phi));
-    if (maps::is_finite(step.estimated_pose)) {
+    if (step.quality != PoseQuality::kLost && maps::is_finite(step.estimated_pose)) {
       estimate.add(maps::distance(position, maps::position_of(step.estimated_pose)));
     }
     speed.add(step.true_twist.vx - step.command.vx);

@@ -21,7 +21,7 @@ struct DriveMetrics {
   double heading_max_rad = 0.0;
   double final_position_error_m = 0.0;
   double final_heading_error_rad = 0.0;  ///< absolute; 0 when no goal heading was given
-  double estimate_rms_m = 0.0;           ///< estimated against true position
+  double estimate_rms_m = 0.0;           ///< estimated against true position, where not lost
   double speed_rms_error_m_s = 0.0;      ///< true speed against commanded
   double saturation_share = 0.0;  ///< share of steps with a command at a speed or turn-rate limit
   double max_speed_m_s = 0.0;     ///< highest commanded speed

@@ -61,7 +61,7 @@ std::string figures(const DriveReportInput& in) {
 std::string checks_table(const std::vector<ReportCheck>& checks) {
   if (checks.empty()) return {};
   std::string out =
-      "<div><h2>Passed or not</h2>\n<table><tr><th>Figure</th><th class=\"n\">Measured</th>"
+      "<h2>Passed or not</h2>\n<table><tr><th>Figure</th><th class=\"n\">Measured</th>"
       "<th class=\"n\">At most</th><th></th></tr>\n";
   for (const ReportCheck& c : checks) {
     const bool pass = c.value <= c.limit;  // NaN fails
@@ -70,7 +70,7 @@ std::string checks_table(const std::vector<ReportCheck>& checks) {
            escaped(quantity(c.limit, c.unit)) + "</td><td class=\"" +
            (pass ? "pass\">✓ pass" : "fail\">✗ fail") + "</td></tr>\n";
   }
-  return out + "</table></div>\n";
+  return out + "</table>\n";
 }
 
 std::string row(const std::string& name, const std::string& value) {
@@ -79,7 +79,7 @@ std::string row(const std::string& name, const std::string& value) {
 
 std::string metrics_table(const DriveReportInput& in) {
   const control::DriveMetrics& m = in.metrics;
-  std::string out = "<div><h2>All figures</h2>\n<table>\n";
+  std::string out = "<h2>All figures</h2>\n<table>\n";
   out += row("Planned length", quantity(m.path_length_m, "m"));
   out += row("Driven length", quantity(m.driven_length_m, "m"));
   out += row("Planned time", quantity(m.planned_duration_s, "s"));
@@ -98,14 +98,14 @@ std::string metrics_table(const DriveReportInput& in) {
   out += row("Time at a speed or turn limit", quantity(m.saturation_share, "%"));
   out += row("Collisions", std::to_string(in.log.contact_events));
   out += row("How it ended", control::to_string(in.log.status));
-  return out + "</table></div>\n";
+  return out + "</table>\n";
 }
 
 std::string facts_table(const DriveReportInput& in) {
   if (in.facts.empty()) return {};
-  std::string out = "<div><h2>What was driven</h2>\n<table>\n";
+  std::string out = "<h2>What was driven</h2>\n<table>\n";
   for (const auto& [name, value] : in.facts) out += row(name, value);
-  return out + "</table></div>\n";
+  return out + "</table>\n";
 }
 
 std::string files_list(const std::vector<NamedPlot>& plots) {
@@ -121,7 +121,7 @@ std::string files_list(const std::vector<NamedPlot>& plots) {
       {"trajectory_true.txt", "the true poses, TUM format"},
       {"trajectory_estimated.txt", "the poses the controller was given, TUM format"},
   };
-  std::string out = "<div><h2>Files beside this page</h2>\n<ul>\n";
+  std::string out = "<h2>Files beside this page</h2>\n<ul>\n";
   for (const Entry& e : kFiles) {
     out += std::string("<li><a href=\"") + e.file + "\">" + e.file + "</a>: " + e.what + "</li>\n";
   }
@@ -129,7 +129,7 @@ std::string files_list(const std::vector<NamedPlot>& plots) {
   for (std::size_t i = 0; i < plots.size(); ++i) {
     out += (i > 0 ? ", " : "") + ("<a href=\"" + plots[i].file + "\">") + plots[i].file + "</a>";
   }
-  return out + ": the plots</li>\n</ul></div>\n";
+  return out + ": the plots</li>\n</ul>\n";
 }
 
 }  // namespace
@@ -168,8 +168,8 @@ std::string drive_page(const DriveReportInput& in, const std::vector<NamedPlot>&
   out += "<h2>Over time</h2>\n<div class=\"plots\">\n";
   for (const NamedPlot& p : plots) out += "<div>" + plot_svg(p.plot) + "</div>\n";
   out += "</div>\n<div class=\"columns\">\n";
-  out += checks_table(in.checks) + metrics_table(in) + facts_table(in) + files_list(plots);
-  out += "</div>\n";
+  out += "<div>" + checks_table(in.checks) + facts_table(in) + files_list(plots) + "</div>\n";
+  out += "<div>" + metrics_table(in) + "</div>\n</div>\n";
   if (!in.command.empty()) {
     out += "<h2>To repeat it</h2>\n<code>" + escaped(in.command) + "</code>\n";
   }

@@ -1,6 +1,7 @@
 #include "app/report/drive_plots.h"
 
 #include <cmath>
+#include <limits>
 
 #include "control/tracking_metrics.h"
 
@@ -57,6 +58,11 @@ Plot plot_of(const DriveLog& log, std::string title, std::string y_label, double
   return plot;
 }
 
+/// 1, or not a number where there is no estimate: the line gets a gap.
+double known(const DriveStep& s) {
+  return s.quality == PoseQuality::kLost ? std::numeric_limits<double>::quiet_NaN() : 1.0;
+}
+
 PlotSeries dashed(PlotSeries s) {
   s.dashed = true;
   return s;
@@ -69,7 +75,7 @@ std::vector<NamedPlot> drive_plots(const DriveLog& log, const planning::Trajecto
     return kDegrees * maps::wrap_angle(s.true_pose.phi - s.reference.pose.phi);
   };
   const auto seen_heading = [](const DriveStep& s) {
-    return kDegrees * maps::wrap_angle(s.estimated_pose.phi - s.reference.pose.phi);
+    return known(s) * kDegrees * maps::wrap_angle(s.estimated_pose.phi - s.reference.pose.phi);
   };
   const auto across = [&planned](const DriveStep& s) {
     return planned.points.empty() ? 0.0
@@ -85,7 +91,9 @@ std::vector<NamedPlot> drive_plots(const DriveLog& log, const planning::Trajecto
     return kMillimetres *
            maps::distance(maps::position_of(s.true_pose), maps::position_of(s.estimated_pose));
   };
-  const auto sigma = [](const DriveStep& s) { return kMillimetres * s.sigma_position_m; };
+  const auto sigma = [](const DriveStep& s) {
+    return known(s) * kMillimetres * s.sigma_position_m;
+  };
 
   return {
       {"heading_error.svg", plot_of(log, "Heading error", "degrees", 4.0,

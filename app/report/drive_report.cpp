@@ -1,5 +1,6 @@
 #include "app/report/drive_report.h"
 
+#include <algorithm>
 #include <string_view>
 #include <system_error>
 
@@ -22,12 +23,26 @@ void make_folder(const std::filesystem::path& dir) {
   }
 }
 
+bool same_as_truth(const control::DriveLog& log) {
+  return std::all_of(log.steps.begin(), log.steps.end(), [](const control::DriveStep& s) {
+    return s.quality == control::PoseQuality::kLost ||
+           maps::distance(maps::position_of(s.true_pose), maps::position_of(s.estimated_pose)) <
+               1e-9;
+  });
+}
+
 /// The caller's layers, with the paths of the log where it gave none.
 MapPictureLayers completed_layers(const DriveReportInput& in) {
   MapPictureLayers layers = in.layers;
   if (layers.planned_path.empty()) layers.planned_path = positions_of(in.planned.points);
   if (layers.driven_path.empty()) {
     for (const auto& s : in.log.steps) layers.driven_path.push_back(maps::position_of(s.true_pose));
+  }
+  if (layers.estimated_path.empty() && !same_as_truth(in.log)) {
+    for (const auto& s : in.log.steps) {
+      if (s.quality == control::PoseQuality::kLost) continue;
+      layers.estimated_path.push_back(maps::position_of(s.estimated_pose));
+    }
   }
   return layers;
 }

@@ -26,6 +26,7 @@ const cv::Scalar kStartColor(115, 158, 0), kGoalColor(167, 60, 190), kWhite(255,
 const cv::Scalar kKeyframeColor(160, 150, 140);
 
 constexpr int kShortestLongerSide = 800, kLongestLongerSide = 1600;
+constexpr int kScaleBarWidth = 150;  ///< room for it beside the legend
 constexpr int kBorder = 24, kTitleHeight = 40, kLegendRow = 30;
 constexpr int kSubPixelBits = 4;
 constexpr double kMarginM = 0.4;
@@ -262,8 +263,8 @@ void draw_layers(Canvas& canvas, const MapPictureLayers& layers) {
     draw_disc(image, at, 2, kKeyframeColor);
   }
   draw_path(canvas, layers.planned_path, kPlannedColor, 6);
-  draw_path(canvas, layers.estimated_path, kEstimatedColor, 1);
   draw_path(canvas, layers.driven_path, kDrivenColor, 2);
+  draw_path(canvas, layers.estimated_path, kEstimatedColor, 1);
   for (const TPoint2D& via : layers.via_points) {
     if (std::isfinite(via.x) && std::isfinite(via.y)) {
       draw_diamond(image, canvas.pixel(via), 8, kPlannedColor);
@@ -310,7 +311,9 @@ std::vector<LegendEntry> legend_of(const MapPictureLayers& layers) {
 
 int entry_width(const LegendEntry& entry) { return 32 + text_width(entry.name, kFontScale) + 22; }
 
-/// Which row every entry falls into for a given width; returns the number of rows.
+int legend_width(int map_width) { return map_width - kScaleBarWidth; }
+
+/// How many rows the entries need in a given width.
 int legend_rows(const std::vector<LegendEntry>& entries, int width) {
   int rows = 1, x = 0;
   for (const auto& e : entries) {
@@ -353,7 +356,7 @@ void draw_legend(Canvas& canvas, const std::vector<LegendEntry>& entries) {
   const cv::Rect map = canvas.map_area();
   int x = map.x, y = map.y + map.height + kLegendRow - 6;
   for (const auto& e : entries) {
-    if (x > map.x && x + entry_width(e) > map.x + map.width) {
+    if (x > map.x && x + entry_width(e) > map.x + legend_width(map.width)) {
       x = map.x;
       y += kLegendRow;
     }
@@ -363,10 +366,10 @@ void draw_legend(Canvas& canvas, const std::vector<LegendEntry>& entries) {
   }
 }
 
-/// A bar of a round length, about a fifth of the picture wide, in the lower right corner.
+/// A bar of a round length, about an eighth of the picture wide, at the right of the legend.
 void draw_scale_bar(Canvas& canvas) {
   const cv::Rect map = canvas.map_area();
-  const double widest_m = 0.22 * map.width / canvas.px_per_m();
+  const double widest_m = (kScaleBarWidth - 10) / canvas.px_per_m();
   double length_m = std::pow(10.0, std::floor(std::log10(widest_m)));
   for (const double factor : {5.0, 2.0}) {
     if (factor * length_m <= widest_m) {
@@ -376,19 +379,13 @@ void draw_scale_bar(Canvas& canvas) {
   }
   const int length_px = static_cast<int>(std::lround(length_m * canvas.px_per_m()));
   const std::string label = fixed(length_m, length_m >= 1.0 ? 0 : (length_m >= 0.1 ? 1 : 2)) + " m";
-  const cv::Point right(map.x + map.width - 18, map.y + map.height - 18);
-  const int label_width = text_width(label, kFontScale);
-  const int box_width = std::max(length_px, label_width) + 20;
-  const cv::Rect box(right.x - box_width + 10, right.y - 32, box_width, 44);
-  cv::rectangle(canvas.image, box, kWhite, cv::FILLED);
-  cv::rectangle(canvas.image, box, kUnknownColor, 1);
-  const cv::Point from(box.x + (box.width - length_px) / 2, right.y + 2);
-  const cv::Point to = from + cv::Point(length_px, 0);
+  const cv::Point to(map.x + map.width - 2, map.y + map.height + kLegendRow - 2);
+  const cv::Point from = to - cv::Point(length_px, 0);
   cv::line(canvas.image, from, to, kInk, 2);
   cv::line(canvas.image, from - cv::Point(0, 5), from + cv::Point(0, 5), kInk, 2);
   cv::line(canvas.image, to - cv::Point(0, 5), to + cv::Point(0, 5), kInk, 2);
-  draw_text(canvas.image, label, {box.x + (box.width - label_width) / 2, right.y - 12}, kFontScale,
-            kInk);
+  const int middle = (from.x + to.x - text_width(label, kFontScale)) / 2;
+  draw_text(canvas.image, label, {middle, from.y - 8}, kFontScale, kInk);
 }
 
 /// The title shortened until it fits.
@@ -407,7 +404,7 @@ std::string map_picture_png(const OccupancyGrid& grid, const MapPictureLayers& l
   const int title_px = layers.title.empty() ? 0 : kTitleHeight - kBorder / 2;
   // The legend's height depends on the map's width, which a first canvas tells.
   const Canvas sized(grid, layers, title_px, 0);
-  const int legend_px = kLegendRow * legend_rows(entries, sized.map_area().width);
+  const int legend_px = kLegendRow * legend_rows(entries, legend_width(sized.map_area().width));
   Canvas canvas(grid, layers, title_px, legend_px);
   draw_layers(canvas, layers);
   draw_scale_bar(canvas);

@@ -10,7 +10,7 @@ namespace rovigo::app {
 namespace {
 
 constexpr double kLeft = 62, kRight = 14, kTop = 58, kBottom = 44;  // margins, px
-constexpr double kLegendGap = 16, kCharacterPx = 6.4;
+constexpr double kLegendGap = 14, kCharacterPx = 7.1;
 
 struct Range {
   double low = 0.0;
