@@ -98,6 +98,11 @@ void Renderer::render(const mrpt::poses::CPose3D& world_from_camera,
   const PixelRays rays = pixel_rays(world_from_camera, camera);
   const std::vector<FaceView> faces = impl_->face_views(rays);
 
+  std::vector<float> column_slope;
+  for (int x = 0; x < view.width; ++x) {
+    column_slope.push_back(static_cast<float>((x - camera.cx()) / camera.fx()));
+  }
+
   const auto render_rows = [&](int first_row, int row_step) {
     const auto width = static_cast<std::size_t>(view.width);
     std::vector<std::uint32_t> face(width);
@@ -107,11 +112,11 @@ void Renderer::render(const mrpt::poses::CPose3D& world_from_camera,
       const Eigen::Vector3d first = rays.d0 + y * rays.dy;
       impl_->scene->cast_row(rays.origin.cast<float>(), first.cast<float>(), rays.dx.cast<float>(),
                              view.width, kFarM, face.data(), t.data());
-      const double ry = (y - camera.cy()) / camera.fy();
+      const auto ry = static_cast<float>((y - camera.cy()) / camera.fy());
       for (std::size_t x = 0; x < width; ++x) {
         if (face[x] != RayScene::kMiss) face[x] = impl_->face_of_quad[face[x]];
-        const double rx = (static_cast<double>(x) - camera.cx()) / camera.fx();
-        inverse_length[x] = static_cast<float>(1.0 / std::sqrt(1.0 + rx * rx + ry * ry));
+        const auto rx = column_slope[x];
+        inverse_length[x] = 1.0F / std::sqrt(1.0F + rx * rx + ry * ry);
       }
       const std::size_t start = static_cast<std::size_t>(y) * width;
       shade_row(

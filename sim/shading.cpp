@@ -1,5 +1,8 @@
 #include "sim/shading.h"
 
+#include <emmintrin.h>
+
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -8,89 +11,135 @@ namespace rovigo::sim {
 namespace {
 
 constexpr int kSide = 512;  // Texture::kSide, checked in renderer.cpp
-constexpr int kMaxLevel = 9;
-constexpr int kMaxTaps = 6;  // along the longer axis of the pixel's footprint
+constexpr float kMaxLevel = 9.0F;
+constexpr int kMaxTaps = 6;  // along the longer axis of a pixel's footprint
+constexpr int kChunk = 64;   // pixels worked on together
+constexpr float kSubTexel = 256.0F;
 
-using Float4 = float __attribute__((vector_size(16)));
-using Int4 = std::int32_t __attribute__((vector_size(16)));
-using Byte4 = std::uint8_t __attribute__((vector_size(4)));
-
-inline Float4 load_texel(const std::uint8_t* texels, int index) {
-  Byte4 bytes;
-  std::memcpy(&bytes, texels + static_cast<std::ptrdiff_t>(index) * 4, 4);
-  return __builtin_convertvector(bytes, Float4);
-}
-
-inline int fast_floor(float v) {
-  const int i = static_cast<int>(v);
-  return i - (v < static_cast<float>(i) ? 1 : 0);
-}
-
-/// Bilinear sample of one mip level at texel coordinates of level 0; the texture repeats.
-inline Float4 sample_level(const std::uint8_t* texels, int level, float u, float v) {
-  const int side = kSide >> level;
-  const int mask = side - 1;
-  const float scale = 1.0F / static_cast<float>(1 << level);
-  const float x = u * scale - 0.5F;
-  const float y = v * scale - 0.5F;
-  const int ix = fast_floor(x);
-  const int iy = fast_floor(y);
-  const float fx = x - static_cast<float>(ix);
-  const float fy = y - static_cast<float>(iy);
-  const int x0 = ix & mask;
-  const int x1 = (ix + 1) & mask;
-  const int y0 = (iy & mask) * side;
-  const int y1 = ((iy + 1) & mask) * side;
-  const Float4 low = load_texel(texels, y0 + x0) * (1.0F - fx) + load_texel(texels, y0 + x1) * fx;
-  const Float4 high = load_texel(texels, y1 + x0) * (1.0F - fx) + load_texel(texels, y1 + x1) * fx;
-  return low * (1.0F - fy) + high * fy;
-}
-
-/// log2 for positive numbers, piecewise linear in the mantissa: good to 0.09, plenty for mip
-/// levels, and continuous.
-inline float rough_log2(float v) {
-  std::int32_t bits;
-  std::memcpy(&bits, &v, sizeof bits);
-  return static_cast<float>(bits) * (1.0F / 8388608.0F) - 127.0F;
-}
-
-struct Footprint {
-  float du_dx, dv_dx, du_dy, dv_dy;  // texels a pixel
+/// Where to look up the texture for each pixel of a chunk: `taps` places around (u, v), `step`
+/// apart, at a mip level (integer part and share of the next).
+struct Lookups {
+  float u[kChunk];
+  float v[kChunk];
+  float step_u[kChunk];
+  float step_v[kChunk];
+  float level[kChunk];
+  float taps[kChunk];
 };
 
-/// Anisotropic trilinear lookup (in the manner of Heckbert 1986): taps along the footprint's
-/// longer axis, each from the mip levels that fit the shorter one.
-inline Float4 sample(const FaceView& face, float u, float v, const Footprint& f) {
-  const float a2 = f.du_dx * f.du_dx + f.dv_dx * f.dv_dx;
-  const float b2 = f.du_dy * f.du_dy + f.dv_dy * f.dv_dy;
-  const bool along_x = a2 > b2;
-  const float long_side = std::sqrt(along_x ? a2 : b2);
-  const float short_side = std::sqrt(along_x ? b2 : a2);
-  const float limit = short_side > 1.0F ? short_side : 1.0F;
-  int taps = static_cast<int>(long_side / limit + 0.999F);
-  taps = taps < 1 ? 1 : (taps > kMaxTaps ? kMaxTaps : taps);
-  float width = long_side / static_cast<float>(taps);
-  width = width > limit ? width : limit;
-  float level = rough_log2(width);
-  level = level > static_cast<float>(kMaxLevel) ? static_cast<float>(kMaxLevel) : level;
-  const int fine = level > 0.0F ? static_cast<int>(level) : 0;
-  const int coarse = fine < kMaxLevel ? fine + 1 : fine;
-  const float blend = level > 0.0F ? level - static_cast<float>(fine) : 0.0F;
-  const float step_u = (along_x ? f.du_dx : f.du_dy) / static_cast<float>(taps);
-  const float step_v = (along_x ? f.dv_dx : f.dv_dy) / static_cast<float>(taps);
-  const float centre = 0.5F * static_cast<float>(taps - 1);
-  Float4 sum = {0.0F, 0.0F, 0.0F, 0.0F};
-  for (int i = 0; i < taps; ++i) {
-    const float k = static_cast<float>(i) - centre;
-    const float tu = u + k * step_u;
-    const float tv = v + k * step_v;
-    Float4 s = sample_level(face.levels[fine], fine, tu, tv);
-    if (blend > 0.0F) {
-      s += (sample_level(face.levels[coarse], coarse, tu, tv) - s) * blend;
-    }
-    sum += s;
+/// log2 of positive numbers, linear between powers of two: within 0.09, and continuous.
+inline float rough_log2(float v) {
+  return static_cast<float>(std::bit_cast<std::int32_t>(v)) * (1.0F / 8388608.0F) - 127.0F;
+}
+
+/// Pixels x0 .. x0 + count of one face: geometry, and where their footprints lie on the texture.
+/// The footprint's derivatives come from u = u_start + t (u . D), t = plane / (n . D). The longer
+/// of its two sides is sampled in several places, each as wide as the shorter one (in the manner
+/// of Heckbert 1986), so that floors seen at a grazing angle stay sharp across.
+inline void locate(const FaceView& face, const RowShading& row, int x0, int count, float* depth,
+                   float* cos_incidence, Lookups& out) {
+  const float n0 = face.n[0] + face.n[2] * row.y;
+  const float u0 = face.u[0] + face.u[2] * row.y;
+  const float v0 = face.v[0] + face.v[2] * row.y;
+  for (int i = 0; i < count; ++i) {
+    const auto x = static_cast<float>(x0 + i);
+    const float facing = n0 + face.n[1] * x;
+    const float inverse = 1.0F / facing;
+    const float t = face.plane * inverse;
+    depth[x0 + i] = t;
+    cos_incidence[x0 + i] = std::fabs(facing) * row.inverse_ray_length[x0 + i];
+    const float ud = u0 + face.u[1] * x;
+    const float vd = v0 + face.v[1] * x;
+    out.u[i] = face.u_start + t * ud;
+    out.v[i] = face.v_start + t * vd;
+    const float du_dx = t * (face.u[1] - ud * face.n[1] * inverse);
+    const float dv_dx = t * (face.v[1] - vd * face.n[1] * inverse);
+    const float du_dy = t * (face.u[2] - ud * face.n[2] * inverse);
+    const float dv_dy = t * (face.v[2] - vd * face.n[2] * inverse);
+    const float a = std::sqrt(du_dx * du_dx + dv_dx * dv_dx);
+    const float b = std::sqrt(du_dy * du_dy + dv_dy * dv_dy);
+    const bool along_x = a > b;
+    const float long_side = along_x ? a : b;
+    const float short_side = along_x ? b : a;
+    const float limit = short_side > 1.0F ? short_side : 1.0F;
+    float taps = static_cast<float>(static_cast<int>(long_side / limit + 0.75F));
+    taps = taps < 1.0F ? 1.0F : taps;
+    taps = taps > kMaxTaps ? static_cast<float>(kMaxTaps) : taps;
+    const float per_tap = 1.0F / taps;
+    float width = long_side * per_tap;
+    width = width > limit ? width : limit;
+    float level = rough_log2(width);
+    level = level < 0.0F ? 0.0F : level;
+    out.level[i] = level > kMaxLevel ? kMaxLevel : level;
+    out.taps[i] = taps;
+    out.step_u[i] = (along_x ? du_dx : du_dy) * per_tap;
+    out.step_v[i] = (along_x ? dv_dx : dv_dy) * per_tap;
   }
-  return sum * (1.0F / (128.0F * static_cast<float>(taps)));
+}
+
+/// Bilinear sample of a mip level: four channels of 16 bits (texel * 256) in the low half. `x` and
+/// `y` count 1/256 of a texel of that level. A row holds one texel more than the side, the first
+/// again, and so does the level hold one row more.
+inline __m128i bilinear(const std::uint8_t* texels, int side, int x, int y) {
+  const int column = (x >> 8) & (side - 1);
+  const int line = (y >> 8) & (side - 1);
+  const std::ptrdiff_t pitch = (static_cast<std::ptrdiff_t>(side) + 1) * 4;
+  const std::uint8_t* low = texels + line * pitch + column * 4;
+  const __m128i zero = _mm_setzero_si128();
+  const auto pair = [zero](const std::uint8_t* p) {
+    std::int64_t two_texels;
+    std::memcpy(&two_texels, p, sizeof two_texels);
+    return _mm_unpacklo_epi8(_mm_cvtsi64_si128(two_texels), zero);
+  };
+  const int fx = x & 255;
+  const int fy = (y & 255) << 8;
+  const __m128i weights = _mm_unpacklo_epi64(_mm_set1_epi16(static_cast<std::int16_t>(256 - fx)),
+                                             _mm_set1_epi16(static_cast<std::int16_t>(fx)));
+  const __m128i row0 = _mm_mullo_epi16(pair(low), weights);
+  const __m128i row1 = _mm_mullo_epi16(pair(low + pitch), weights);
+  const __m128i top = _mm_add_epi16(row0, _mm_unpackhi_epi64(row0, row0));
+  const __m128i bottom = _mm_add_epi16(row1, _mm_unpackhi_epi64(row1, row1));
+  return _mm_add_epi16(_mm_mulhi_epu16(top, _mm_set1_epi16(static_cast<std::int16_t>(65535 - fy))),
+                       _mm_mulhi_epu16(bottom, _mm_set1_epi16(static_cast<std::int16_t>(fy))));
+}
+
+/// Mean over the taps of the trilinear sample; texel * 256 in four lanes.
+inline __m128 sample(const std::uint8_t* const* levels, const Lookups& at, int i) {
+  const int fine = static_cast<int>(at.level[i]);
+  const int coarse = fine < static_cast<int>(kMaxLevel) ? fine + 1 : fine;
+  const auto blend = static_cast<int>((at.level[i] - static_cast<float>(fine)) * 65535.0F);
+  const float fine_scale = kSubTexel / static_cast<float>(1 << fine);
+  const float coarse_scale = kSubTexel / static_cast<float>(1 << coarse);
+  // A texel's value belongs to its middle, hence the half.
+  const __m128 scale = _mm_set_ps(coarse_scale, coarse_scale, fine_scale, fine_scale);
+  const __m128 half = _mm_set1_ps(-0.5F * kSubTexel);
+  const auto taps = static_cast<int>(at.taps[i]);
+  const float first = -0.5F * static_cast<float>(taps - 1);
+  __m128i sum = _mm_setzero_si128();
+  for (int k = 0; k < taps; ++k) {
+    const float offset = first + static_cast<float>(k);
+    const float u = at.u[i] + offset * at.step_u[i];
+    const float v = at.v[i] + offset * at.step_v[i];
+    alignas(16) std::int32_t place[4];
+    _mm_store_si128(reinterpret_cast<__m128i*>(place),
+                    _mm_cvtps_epi32(_mm_add_ps(_mm_mul_ps(_mm_set_ps(v, u, v, u), scale), half)));
+    __m128i texel = bilinear(levels[fine], kSide >> fine, place[0], place[1]);
+    if (blend > 0) {
+      const __m128i other = bilinear(levels[coarse], kSide >> coarse, place[2], place[3]);
+      texel = _mm_add_epi16(
+          _mm_mulhi_epu16(texel, _mm_set1_epi16(static_cast<std::int16_t>(65535 - blend))),
+          _mm_mulhi_epu16(other, _mm_set1_epi16(static_cast<std::int16_t>(blend))));
+    }
+    sum = _mm_add_epi32(sum, _mm_unpacklo_epi16(texel, _mm_setzero_si128()));
+  }
+  return _mm_mul_ps(_mm_cvtepi32_ps(sum), _mm_set1_ps(1.0F / static_cast<float>(taps)));
+}
+
+/// Pixels that met nothing, or a plain face.
+inline void fill(const float bgr[3], int x0, int count, float* out) {
+  for (int x = x0; x < x0 + count; ++x) {
+    for (int c = 0; c < 3; ++c) out[static_cast<std::ptrdiff_t>(x) * 3 + c] = bgr[c];
+  }
 }
 
 }  // namespace
@@ -98,33 +147,37 @@ inline Float4 sample(const FaceView& face, float u, float v, const Footprint& f)
 __attribute__((target_clones("avx2", "default"))) void shade_row(const RowShading& row,
                                                                  float* depth, float* cos_incidence,
                                                                  float* bgr) {
-  for (int x = 0; x < row.width; ++x) {
-    float* out = bgr + static_cast<std::ptrdiff_t>(x) * 3;
-    if (row.face[x] == kNoFace) {
-      depth[x] = std::numeric_limits<float>::infinity();
-      cos_incidence[x] = 0.0F;
-      out[0] = out[1] = out[2] = 0.0F;
+  constexpr float kBlack[3] = {0.0F, 0.0F, 0.0F};
+  Lookups lookups;
+  int x = 0;
+  while (x < row.width) {  // runs of pixels on one face
+    const std::uint32_t id = row.face[x];
+    int count = 1;
+    while (count < kChunk && x + count < row.width && row.face[x + count] == id) ++count;
+    if (id == kNoFace) {
+      for (int i = x; i < x + count; ++i) {
+        depth[i] = std::numeric_limits<float>::infinity();
+        cos_incidence[i] = 0.0F;
+      }
+      fill(kBlack, x, count, bgr);
+      x += count;
       continue;
     }
-    const FaceView& face = row.faces[row.face[x]];
-    const auto px = static_cast<float>(x);
-    const float facing = face.n[0] + face.n[1] * px + face.n[2] * row.y;
-    const float inverse = 1.0F / facing;
-    const float t = face.plane * inverse;
-    depth[x] = t;
-    cos_incidence[x] = std::fabs(facing) * row.inverse_ray_length[x];
+    const FaceView& face = row.faces[id];
+    locate(face, row, x, count, depth, cos_incidence, lookups);
     if (!face.levels) {
-      for (int c = 0; c < 3; ++c) out[c] = face.bgr[c];
-      continue;
+      fill(face.bgr, x, count, bgr);
+    } else {
+      // 128 * 256 is the material's own colour.
+      const __m128 tint = _mm_mul_ps(_mm_set_ps(0.0F, face.bgr[2], face.bgr[1], face.bgr[0]),
+                                     _mm_set1_ps(1.0F / 32768.0F));
+      for (int i = 0; i < count; ++i) {
+        alignas(16) float color[4];
+        _mm_store_ps(color, _mm_mul_ps(sample(face.levels, lookups, i), tint));
+        for (int c = 0; c < 3; ++c) bgr[static_cast<std::ptrdiff_t>(x + i) * 3 + c] = color[c];
+      }
     }
-    const float ud = face.u[0] + face.u[1] * px + face.u[2] * row.y;
-    const float vd = face.v[0] + face.v[1] * px + face.v[2] * row.y;
-    // d(t u)/dx with t = plane / facing
-    const Footprint f{
-        t * (face.u[1] - ud * face.n[1] * inverse), t * (face.v[1] - vd * face.n[1] * inverse),
-        t * (face.u[2] - ud * face.n[2] * inverse), t * (face.v[2] - vd * face.n[2] * inverse)};
-    const Float4 texel = sample(face, face.u_start + t * ud, face.v_start + t * vd, f);
-    for (int c = 0; c < 3; ++c) out[c] = texel[c] * face.bgr[c];
+    x += count;
   }
 }
 

@@ -150,35 +150,66 @@ Rgb books(float u, float v, std::uint32_t seed) {
   return lettering ? grey(h(7) > 0.5F ? 1.7F : 0.1F) : cover;
 }
 
-/// A print that fills one square metre: a tinted ground, discs, bars, blocks of text.
-Rgb poster(float u, float v, std::uint32_t seed) {
-  const auto h = [&](int i, std::uint32_t k) { return hash01(i, static_cast<int>(k), seed); };
-  Rgb c = mix({0.6F + 1.1F * h(0, 1), 0.6F + 1.1F * h(0, 2), 0.6F + 1.1F * h(0, 3)}, grey(1.6F),
-              0.5F * v);
-  for (int i = 1; i <= 26; ++i) {
-    const float x = h(i, 4);
-    const float y = h(i, 5);
-    const float size = 0.02F + 0.11F * h(i, 6) * h(i, 7);
-    const Rgb ink{1.9F * h(i, 8), 1.9F * h(i, 9), 1.9F * h(i, 10)};
-    const float dx = std::abs(u - x);
-    const float dy = std::abs(v - y);
-    const bool disc = h(i, 11) < 0.4F;
-    const float aspect = 0.3F + 1.6F * h(i, 12);
-    if (disc ? dx * dx + dy * dy < size * size : dx < size && dy < size * aspect) c = ink;
+/// A print that fills one square metre: a tinted ground, discs and bars, blocks of text.
+class Print {
+ public:
+  explicit Print(std::uint32_t seed) : seed_(seed) {
+    const auto h = [&](int i, int k) { return hash01(i, k, seed); };
+    ground_ = {0.7F + 0.8F * h(0, 1), 0.7F + 0.8F * h(0, 2), 0.7F + 0.8F * h(0, 3)};
+    for (int i = 0; i < kShapes; ++i) {
+      const float size = 0.02F + 0.11F * h(i + 1, 6) * h(i + 1, 7);
+      shapes_[i] = {h(i + 1, 4),
+                    h(i + 1, 5),
+                    size,
+                    size * (0.3F + 1.6F * h(i + 1, 12)),
+                    h(i + 1, 11) < 0.4F,
+                    {1.9F * h(i + 1, 8), 1.9F * h(i + 1, 9), 1.9F * h(i + 1, 10)}};
+    }
+    for (int i = 0; i < kTexts; ++i) {
+      texts_[i] = {0.8F * h(i + 40, 4), 0.85F * h(i + 40, 6), 0.15F + 0.3F * h(i + 40, 5),
+                   0.06F + 0.1F * h(i + 40, 7)};
+    }
   }
-  for (int i = 40; i < 45; ++i) {  // text: dark words on lines
-    const float x = (u - 0.8F * h(i, 4)) / (0.15F + 0.3F * h(i, 5));
-    const float y = (v - 0.85F * h(i, 6)) / (0.06F + 0.1F * h(i, 7));
-    if (x < 0.0F || x > 1.0F || y < 0.0F || y > 1.0F) continue;
-    const int line = static_cast<int>(y * 5.0F);
-    const bool gap = y * 5.0F - static_cast<float>(line) < 0.4F;
-    c = !gap && hash01(static_cast<int>(x * 26.0F), line, seed + static_cast<std::uint32_t>(i)) >
-                    0.3F
-            ? grey(0.08F)
-            : grey(1.75F);
+
+  Rgb color_at(float u, float v) const {
+    Rgb c = mix(ground_, grey(1.5F), 0.5F * v);
+    for (const auto& s : shapes_) {
+      const float dx = std::abs(u - s.x);
+      const float dy = std::abs(v - s.y);
+      const bool inside =
+          s.is_disc ? dx * dx + dy * dy < s.width * s.width : dx < s.width && dy < s.height;
+      if (inside) c = s.ink;
+    }
+    for (int i = 0; i < kTexts; ++i) {
+      const auto& t = texts_[i];
+      const float x = (u - t.x) / t.width;
+      const float y = (v - t.y) / t.height;
+      if (x < 0.0F || x > 1.0F || y < 0.0F || y > 1.0F) continue;
+      const int line = static_cast<int>(y * 5.0F);
+      const bool between_lines = y * 5.0F - static_cast<float>(line) < 0.4F;
+      const bool word = hash01(static_cast<int>(x * 26.0F), line,
+                               seed_ + 40U + static_cast<std::uint32_t>(i)) > 0.3F;
+      c = !between_lines && word ? grey(0.08F) : grey(1.7F);
+    }
+    return c;
   }
-  return c;
-}
+
+ private:
+  struct Shape {
+    float x, y, width, height;
+    bool is_disc;
+    Rgb ink;
+  };
+  struct Text {
+    float x, y, width, height;
+  };
+  static constexpr int kShapes = 26;
+  static constexpr int kTexts = 5;
+  std::uint32_t seed_;
+  Rgb ground_;
+  Shape shapes_[kShapes];
+  Text texts_[kTexts];
+};
 
 Rgb cardboard(float u, float v, std::uint32_t seed) {
   const float grain = octaves(u, v, 12, 5, 0.75F, seed);
@@ -214,10 +245,9 @@ Rgb color_at(Pattern pattern, float u, float v, std::uint32_t seed) {
       return carpet(u, v, seed);
     case Pattern::kBooks:
       return books(u, v, seed);
-    case Pattern::kPoster:
-      return poster(u, v, seed);
     case Pattern::kCardboard:
       return cardboard(u, v, seed);
+    case Pattern::kPoster:  // drawn as a whole, see Print
     case Pattern::kPlain:
       break;
   }
@@ -229,44 +259,55 @@ std::uint8_t to_texel(float value) {
 }
 
 /// Each level is the mean of 2 x 2 texels of the one before it.
-void build_levels(Texture& texture) {
-  for (int level = 1; level < Texture::kLevels; ++level) {
-    const auto& fine = texture.texels[level - 1];
-    auto& coarse = texture.texels[level];
-    const int side = kSide >> level;
-    const int fine_side = side * 2;
-    coarse.resize(static_cast<std::size_t>(side) * side * 4);
-    for (int y = 0; y < side; ++y) {
-      for (int x = 0; x < side; ++x) {
-        for (int c = 0; c < 4; ++c) {
-          const auto at = [&](int dx, int dy) {
-            return int{
-                fine[(static_cast<std::size_t>(2 * y + dy) * fine_side + 2 * x + dx) * 4 + c]};
-          };
-          coarse[(static_cast<std::size_t>(y) * side + x) * 4 + c] =
-              static_cast<std::uint8_t>((at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1) + 2) / 4);
-        }
-      }
+std::vector<std::uint8_t> halved(const std::vector<std::uint8_t>& fine, int side) {
+  std::vector<std::uint8_t> coarse(static_cast<std::size_t>(side) * side);
+  coarse.resize(coarse.size() * 4);
+  const auto row = static_cast<std::size_t>(side) * 8;
+  for (std::size_t y = 0; y < static_cast<std::size_t>(side); ++y) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(side) * 4; ++i) {
+      const std::uint8_t* p = &fine[2 * y * row + (i / 4) * 8 + i % 4];
+      coarse[y * static_cast<std::size_t>(side) * 4 + i] =
+          static_cast<std::uint8_t>((p[0] + p[4] + p[row] + p[row + 4] + 2) / 4);
     }
   }
+  return coarse;
+}
+
+/// Appends the first texel to every row and the first row to the level, so that a bilinear lookup
+/// at its border finds its neighbours in place.
+std::vector<std::uint8_t> padded(const std::vector<std::uint8_t>& level, int side) {
+  std::vector<std::uint8_t> out;
+  const auto row = static_cast<std::ptrdiff_t>(side) * 4;
+  out.reserve(static_cast<std::size_t>((side + 1) * (row + 4)));
+  for (int y = 0; y <= side; ++y) {
+    const auto start = level.begin() + (y % side) * row;
+    out.insert(out.end(), start, start + row);
+    out.insert(out.end(), start, start + 4);
+  }
+  return out;
 }
 
 std::unique_ptr<Texture> bake(Pattern pattern, std::uint32_t seed) {
   auto texture = std::make_unique<Texture>();
-  if (pattern == Pattern::kPoster) texture->texels_per_m = 512.0F;
-  texture->texels[0].resize(static_cast<std::size_t>(kSide) * kSide * 4);
+  if (pattern == Pattern::kPoster) texture->texels_per_m = kSide;  // a print covers 1 m
+  const Print print(seed);
+  std::vector<std::uint8_t> level(static_cast<std::size_t>(kSide) * kSide * 4);
+  std::uint8_t* texel = level.data();
   for (int y = 0; y < kSide; ++y) {
-    for (int x = 0; x < kSide; ++x) {
-      const Rgb c = color_at(pattern, (static_cast<float>(x) + 0.5F) / kSide,
-                             (static_cast<float>(y) + 0.5F) / kSide, seed);
-      auto* texel = &texture->texels[0][(static_cast<std::size_t>(y) * kSide + x) * 4];
+    for (int x = 0; x < kSide; ++x, texel += 4) {
+      const float u = (static_cast<float>(x) + 0.5F) / kSide;
+      const float v = (static_cast<float>(y) + 0.5F) / kSide;
+      const Rgb c =
+          pattern == Pattern::kPoster ? print.color_at(u, v) : color_at(pattern, u, v, seed);
       texel[0] = to_texel(c.b);
       texel[1] = to_texel(c.g);
       texel[2] = to_texel(c.r);
-      texel[3] = 0;
     }
   }
-  build_levels(*texture);
+  for (int i = 0, side = kSide; i < Texture::kLevels; ++i, side /= 2) {
+    if (i > 0) level = halved(level, side);
+    texture->texels[i] = padded(level, side);
+  }
   return texture;
 }
 

@@ -13,7 +13,8 @@
 namespace rovigo::sim {
 
 /// Texels are 4 bytes (blue, green, red, 0); 128 means the material's own colour, so a texel
-/// multiplies by texel / 128. Level l has side (kSide >> l).
+/// multiplies by texel / 128. Level l has side kSide >> l and is stored with its
+/// first column repeated at the end of every row, and its first row at the end.
 struct Texture {
   static constexpr int kSide = 512;
   static constexpr int kLevels = 10;
