@@ -64,6 +64,12 @@ class LandmarkMap {
   /// features with depth become new landmarks. Returns the keyframe's id.
   int add_keyframe(Keyframe keyframe);
 
+  /// Replaces everything by what a map file held.
+  void restore(std::vector<Keyframe> keyframes, std::vector<Landmark> landmarks) {
+    keyframes_ = std::move(keyframes);
+    landmarks_ = std::move(landmarks);
+  }
+
   /// Everything `from` was seen as becomes a sighting of `into`; `from` is gone.
   void merge_landmarks(int from, int into);
 

@@ -1,0 +1,91 @@
+#include "slam/appearance_index.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace rovigo::slam {
+
+namespace {
+
+constexpr int kSimilarBits = 52;       // of 256: descriptors nearer than this are one corner
+constexpr std::size_t kCrowded = 400;  // a fuller bucket tells nothing apart
+
+}  // namespace
+
+AppearanceIndex::AppearanceIndex() {
+  // The sampled bits are part of the method: a fixed seed makes every index the same.
+  std::mt19937_64 random(20260101);
+  for (int t = 0; t < kTables; ++t) {
+    std::vector<int> bits;
+    while (static_cast<int>(bits.size()) < kKeyBits) {
+      const int bit = static_cast<int>(random() % 256);
+      if (std::find(bits.begin(), bits.end(), bit) == bits.end()) bits.push_back(bit);
+    }
+    sampled_bits_.push_back(bits);
+    tables_.emplace_back(std::size_t{1} << kKeyBits);
+  }
+}
+
+std::uint32_t AppearanceIndex::key(const Descriptor& d, int table) const {
+  std::uint32_t k = 0;
+  for (const int bit : sampled_bits_[static_cast<std::size_t>(table)]) {
+    k = (k << 1) |
+        static_cast<std::uint32_t>((d[static_cast<std::size_t>(bit / 64)] >> (bit % 64)) & 1);
+  }
+  return k;
+}
+
+void AppearanceIndex::add(int view, const std::vector<Descriptor>& descriptors) {
+  const auto v = static_cast<std::size_t>(view);
+  if (view_size_.size() <= v) view_size_.resize(v + 1, 0);
+  for (const Descriptor& d : descriptors) {
+    const int index = static_cast<int>(descriptors_.size());
+    descriptors_.push_back(d);
+    ++view_size_[v];
+    for (int t = 0; t < kTables; ++t) {
+      tables_[static_cast<std::size_t>(t)][key(d, t)].push_back({view, index});
+    }
+  }
+}
+
+std::vector<AppearanceScore> AppearanceIndex::query(const std::vector<Descriptor>& descriptors,
+                                                    std::size_t most) const {
+  std::vector<double> votes(view_size_.size(), 0.0);
+  std::vector<int> voted_for(view_size_.size(), -1);  // each descriptor votes once for a view
+  std::vector<int> found;
+  for (std::size_t q = 0; q < descriptors.size(); ++q) {
+    found.clear();
+    for (int t = 0; t < kTables; ++t) {
+      const auto& bucket = tables_[static_cast<std::size_t>(t)][key(descriptors[q], t)];
+      if (bucket.size() > kCrowded) continue;
+      for (const Entry& e : bucket) {
+        const auto view = static_cast<std::size_t>(e.view);
+        if (voted_for[view] == static_cast<int>(q)) continue;
+        const Descriptor& d = descriptors_[static_cast<std::size_t>(e.descriptor)];
+        if (hamming_distance(descriptors[q], d) > kSimilarBits) continue;
+        voted_for[view] = static_cast<int>(q);
+        found.push_back(e.view);
+      }
+    }
+    if (found.empty()) continue;
+    // What many views show says little about which one this is.
+    const double rarity =
+        std::log(1.0 + static_cast<double>(view_size_.size()) / static_cast<double>(found.size()));
+    for (const int view : found) votes[static_cast<std::size_t>(view)] += rarity;
+  }
+  std::vector<AppearanceScore> out;
+  for (std::size_t v = 0; v < votes.size(); ++v) {
+    if (votes[v] <= 0) continue;
+    const double norm =
+        std::sqrt(static_cast<double>(view_size_[v]) *
+                  static_cast<double>(std::max<std::size_t>(1, descriptors.size())));
+    out.push_back({static_cast<int>(v), votes[v] / norm});
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const auto& a, const auto& b) { return a.score > b.score; });
+  if (out.size() > most) out.resize(most);
+  return out;
+}
+
+}  // namespace rovigo::slam

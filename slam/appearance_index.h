@@ -1,0 +1,44 @@
+#pragma once
+// Which stored views look like this one? Locality-sensitive hashing of binary descriptors by bit
+// sampling (Indyk & Motwani 1998): no vocabulary to download or train.
+
+#include <cstdint>
+#include <vector>
+
+#include "slam/descriptor.h"
+
+namespace rovigo::slam {
+
+struct AppearanceScore {
+  int view = 0;
+  double score = 0.0;  ///< share of the query's descriptors found, rare ones counting more
+};
+
+class AppearanceIndex {
+ public:
+  AppearanceIndex();
+
+  /// Views are numbered by the caller; adding one twice adds to it.
+  void add(int view, const std::vector<Descriptor>& descriptors);
+
+  /// Best first; at most `most` views. Ties go to the lower number.
+  std::vector<AppearanceScore> query(const std::vector<Descriptor>& descriptors,
+                                     std::size_t most) const;
+
+ private:
+  static constexpr int kTables = 6;
+  static constexpr int kKeyBits = 14;
+
+  struct Entry {
+    int view = 0;
+    int descriptor = 0;  ///< index into descriptors_
+  };
+  std::uint32_t key(const Descriptor& d, int table) const;
+
+  std::vector<std::vector<int>> sampled_bits_;
+  std::vector<std::vector<std::vector<Entry>>> tables_;
+  std::vector<Descriptor> descriptors_;
+  std::vector<int> view_size_;
+};
+
+}  // namespace rovigo::slam

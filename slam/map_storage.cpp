@@ -1,0 +1,114 @@
+#include "slam/map_storage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "maps/error.h"
+#include "slam/keyframe_codec.h"
+
+namespace rovigo::slam {
+
+namespace {
+
+StoredFeature stored_feature(const LandmarkMap& map, const Keyframe& k, std::size_t i,
+                             const Se3& camera_from_map) {
+  const Feature& f = k.features[i];
+  const Landmark& l = map.landmark(k.landmark_of[i]);
+  const Eigen::Vector3f p = (camera_from_map * l.position_map).cast<float>();
+  StoredFeature s;
+  s.pixel_u = f.pixel.x();
+  s.pixel_v = f.pixel.y();
+  s.angle_rad = f.angle_rad;
+  s.depth_m = f.depth_m;
+  s.octave = f.octave;
+  s.landmark = k.landmark_of[i];
+  s.point_x = p.x();
+  s.point_y = p.y();
+  s.point_z = p.z();
+  s.sigma_m = static_cast<float>(std::sqrt(l.covariance.trace() / 3.0));
+  s.descriptor = k.features.descriptor(i);
+  return s;
+}
+
+Se3 finite_pose(const maps::StoredKeyframe& stored) {
+  const Se3 pose = from_mrpt(stored.map_from_base);
+  if (!is_finite(pose)) {
+    throw maps::InputError("Keyframe " + std::to_string(stored.id) +
+                           " of the map has a pose that is not finite.");
+  }
+  return pose;
+}
+
+}  // namespace
+
+std::vector<maps::StoredKeyframe> store_keyframes(const LandmarkMap& map) {
+  std::vector<maps::StoredKeyframe> out;
+  for (const Keyframe& k : map.keyframes()) {
+    const Se3 camera_from_map = (k.map_from_base * map.base_from_camera()).inverse();
+    std::vector<StoredFeature> features;
+    for (std::size_t i = 0; i < k.features.size(); ++i) {
+      const int l = k.landmark_of[i];
+      if (l < 0 || !map.landmark(l).alive) continue;
+      features.push_back(stored_feature(map, k, i, camera_from_map));
+    }
+    maps::StoredKeyframe s;
+    s.id = k.id;
+    s.time_s = k.time_s;
+    s.map_from_base = to_mrpt(k.map_from_base);
+    s.color_jpeg = k.color_jpeg;
+    s.depth_png = k.depth_png;
+    s.features = encode_features(features);
+    out.push_back(std::move(s));
+  }
+  return out;
+}
+
+LandmarkMap restore_landmark_map(const maps::SavedMap& saved, const SlamConfig& config) {
+  const CameraModel camera(saved.metadata.camera);
+  LandmarkMap map(config, camera, from_mrpt(saved.metadata.base_from_camera));
+  std::map<std::int32_t, int> id_of;  // the file's landmark numbers may be anything
+  std::vector<Keyframe> keyframes;
+  std::vector<Landmark> landmarks;
+  for (const maps::StoredKeyframe& stored : saved.keyframes) {
+    if (stored.features.empty()) continue;
+    Keyframe k;
+    k.id = static_cast<int>(keyframes.size());
+    k.time_s = stored.time_s;
+    k.map_from_base = finite_pose(stored);
+    const Se3 map_from_camera = k.map_from_base * map.base_from_camera();
+    std::vector<Feature> features;
+    std::vector<Descriptor> descriptors;
+    for (const StoredFeature& s : decode_features(stored.features)) {
+      if (s.landmark < 0) continue;
+      const int feature = static_cast<int>(features.size());
+      Feature f;
+      f.pixel = {s.pixel_u, s.pixel_v};
+      f.angle_rad = s.angle_rad;
+      f.depth_m = s.depth_m;
+      f.octave = s.octave;
+      features.push_back(f);
+      descriptors.push_back(s.descriptor);
+      const auto [it, is_new] = id_of.try_emplace(s.landmark, static_cast<int>(landmarks.size()));
+      if (is_new) landmarks.emplace_back();
+      k.landmark_of.push_back(it->second);
+      Landmark& l = landmarks[static_cast<std::size_t>(it->second)];
+      l.position_map = map_from_camera * Eigen::Vector3d(s.point_x, s.point_y, s.point_z);
+      l.covariance = Eigen::Matrix3d::Identity() * static_cast<double>(s.sigma_m * s.sigma_m);
+      const Eigen::Vector3d to_camera = map_from_camera.translation - l.position_map;
+      l.distance_m = std::max(1e-3, to_camera.norm());
+      l.direction_map = to_camera / l.distance_m;
+      l.octave = s.octave;
+      l.descriptor = s.descriptor;
+      l.sightings.push_back({k.id, feature});
+    }
+    k.features =
+        FeatureSet(std::move(features), std::move(descriptors), camera.width(), camera.height());
+    keyframes.push_back(std::move(k));
+  }
+  map.restore(std::move(keyframes), std::move(landmarks));
+  return map;
+}
+
+}  // namespace rovigo::slam

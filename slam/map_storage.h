@@ -1,0 +1,18 @@
+#pragma once
+// slam's own map to and from the map file's keyframes.
+
+#include <vector>
+
+#include "maps/map_file.h"
+#include "slam/landmark_map.h"
+
+namespace rovigo::slam {
+
+/// Keyframes with their living landmarks, as a map file holds them.
+std::vector<maps::StoredKeyframe> store_keyframes(const LandmarkMap& map);
+
+/// The map a saved file's keyframes describe. Throws InputError for features that cannot be read
+/// or a pose that is not finite.
+LandmarkMap restore_landmark_map(const maps::SavedMap& saved, const SlamConfig& config);
+
+}  // namespace rovigo::slam

@@ -1,0 +1,21 @@
+#include "slam/trajectory_history.h"
+
+namespace rovigo::slam {
+
+void TrajectoryHistory::add(double time_s, int keyframe, const Se3& keyframe_from_base,
+                            bool is_camera_frame) {
+  entries_.push_back({time_s, keyframe, keyframe_from_base, is_camera_frame});
+}
+
+std::vector<maps::StoredPose> TrajectoryHistory::poses(const LandmarkMap& map) const {
+  std::vector<maps::StoredPose> out;
+  out.reserve(entries_.size());
+  for (const Entry& e : entries_) {
+    const Se3 pose = e.keyframe < 0 ? e.keyframe_from_base
+                                    : map.keyframe(e.keyframe).map_from_base * e.keyframe_from_base;
+    out.push_back({e.time_s, to_mrpt(normalized(pose)), e.is_camera_frame});
+  }
+  return out;
+}
+
+}  // namespace rovigo::slam
