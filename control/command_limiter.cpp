@@ -19,11 +19,8 @@ double yaw_rate_left(double speed, const DriveLimits& limits) {
   return std::max(0.0, 2 * (limits.max_wheel_speed_m_s - std::abs(speed)) / limits.track_width_m);
 }
 
-double outside_dead_zone(double wheel_speed, double dead_zone) {
-  const double size = std::abs(wheel_speed);
-  const double smallest = 0.1 * dead_zone;
-  if (size >= dead_zone || size < smallest) return wheel_speed;
-  return std::copysign(dead_zone, wheel_speed);
+double faster_wheel(const TTwist2D& twist, double track_width_m) {
+  return std::abs(twist.vx) + std::abs(twist.omega) * track_width_m / 2;
 }
 
 }  // namespace
@@ -61,13 +58,17 @@ TTwist2D limited_command(const TTwist2D& desired, const TTwist2D& last, double d
   return {speed, 0.0, yaw_rate};
 }
 
-TTwist2D with_dead_zone_compensation(const TTwist2D& desired, double dead_zone_m_s,
-                                     double track_width_m) {
-  if (!(dead_zone_m_s > 0.0)) return desired;
-  const double half = track_width_m / 2;
-  const double left = outside_dead_zone(desired.vx - desired.omega * half, dead_zone_m_s);
-  const double right = outside_dead_zone(desired.vx + desired.omega * half, dead_zone_m_s);
-  return {(left + right) / 2, 0.0, (right - left) / track_width_m};
+TTwist2D with_dead_zone_compensation(const TTwist2D& desired, const TTwist2D& present,
+                                     double dead_zone_m_s, double track_width_m) {
+  constexpr double kWorthwhile = 0.1;   // of the dead zone: less is standstill
+  constexpr double kMovingShare = 0.5;  // moving wheels keep moving at less than they start with
+  const double wanted = faster_wheel(desired, track_width_m);
+  if (!(dead_zone_m_s > 0.0) || wanted >= dead_zone_m_s || wanted < kWorthwhile * dead_zone_m_s) {
+    return desired;
+  }
+  if (faster_wheel(present, track_width_m) > kMovingShare * dead_zone_m_s) return desired;
+  const double factor = dead_zone_m_s / wanted;
+  return {desired.vx * factor, 0.0, desired.omega * factor};
 }
 
 }  // namespace rovigo::control

@@ -24,9 +24,10 @@ DriveLimits drive_limits(const ControlConfig& config, const maps::RobotModel& ro
 TTwist2D limited_command(const TTwist2D& desired, const TTwist2D& last, double dt_s,
                          const DriveLimits& limits);
 
-/// Raises small wheel speeds to `dead_zone_m_s`, keeping their signs, so that the drive does not
-/// stall; speeds below a tenth of it are left alone, and so is standstill.
-TTwist2D with_dead_zone_compensation(const TTwist2D& desired, double dead_zone_m_s,
-                                     double track_width_m);
+/// Breaks stiction: while the rover stands (`present`), a desire whose faster wheel would stay
+/// within the dead zone is enlarged, keeping its curvature, until that wheel starts. Desires below
+/// a tenth of it count as standstill; once the rover moves, they are left alone.
+TTwist2D with_dead_zone_compensation(const TTwist2D& desired, const TTwist2D& present,
+                                     double dead_zone_m_s, double track_width_m);
 
 }  // namespace rovigo::control

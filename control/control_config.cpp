@@ -82,8 +82,8 @@ void describe_drive(ControlConfig& c, maps::SettingsVisitor& v) {
           .max = 0.5},
          c.command_delay_s);
   v.real({.name = "dead_zone_speed_m_s",
-          .help = "Wheel speed below which the drive stalls; smaller commands are raised to it "
-                  "(0: no compensation).",
+          .help = "Wheel speed that surely starts a standing rover; smaller commands are raised "
+                  "to it (0: no compensation).",
           .min = 0.0,
           .max = 0.2},
          c.dead_zone_speed_m_s);

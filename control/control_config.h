@@ -28,7 +28,7 @@ struct ControlConfig {
   // What is known of the drive.
   double drive_lag_s = 0.06;
   double command_delay_s = 0.0;
-  double dead_zone_speed_m_s = 0.0;
+  double dead_zone_speed_m_s = 0.045;
   double max_wheel_speed_m_s = 0.9;
   bool adapt_turn_gain = true;
 

@@ -193,7 +193,8 @@ TTwist2D TrajectoryTracker::Impl::follow(double now_s, double dt_s) {
                                 std::abs(out.heading_error_rad)})) {
     status = TrackStatus::kNoProgress;
   }
-  return with_dead_zone_compensation(out.wanted, config.dead_zone_speed_m_s, limits.track_width_m);
+  return with_dead_zone_compensation(out.wanted, input.twist, config.dead_zone_speed_m_s,
+                                     limits.track_width_m);
 }
 
 /// The trajectory is done: stand still, then look whether this is the goal. A goal that was missed

@@ -88,7 +88,7 @@ std::vector<NamedPlot> drive_plots(const DriveLog& log, const planning::Trajecto
            ((s.true_pose.x - r.x) * std::cos(r.phi) + (s.true_pose.y - r.y) * std::sin(r.phi));
   };
   const auto estimate = [](const DriveStep& s) {
-    return kMillimetres *
+    return known(s) * kMillimetres *
            maps::distance(maps::position_of(s.true_pose), maps::position_of(s.estimated_pose));
   };
   const auto sigma = [](const DriveStep& s) {

@@ -56,19 +56,21 @@ TEST(DriveLimits, TakeTheRobotsFiguresAndTheRimSpeed) {
   EXPECT_NEAR(limits.max_yaw_rate_rad_s, 2.0, 1e-12);
 }
 
-TEST(DeadZone, RaisesSmallWheelSpeedsAndKeepsTheirSigns) {
-  const TTwist2D creep = with_dead_zone_compensation({0.03, 0, 0}, 0.05, 0.358);
-  EXPECT_NEAR(creep.vx, 0.05, 1e-12);
-  EXPECT_NEAR(creep.omega, 0.0, 1e-12);
-  const TTwist2D turn = with_dead_zone_compensation({0, 0, -0.1}, 0.05, 0.358);
-  EXPECT_NEAR(turn.vx, 0.0, 1e-12);
+TEST(DeadZone, StartsAStandingRoverOnTheCurveItWants) {
+  const TTwist2D out = with_dead_zone_compensation({0.02, 0, 0.05}, {}, 0.05, 0.358);
+  EXPECT_NEAR(out.vx + out.omega * 0.179, 0.05, 1e-12);
+  EXPECT_NEAR(out.omega / out.vx, 2.5, 1e-9);
+  const TTwist2D turn = with_dead_zone_compensation({0, 0, -0.1}, {}, 0.05, 0.358);
+  EXPECT_EQ(turn.vx, 0.0);
   EXPECT_NEAR(turn.omega * 0.179, -0.05, 1e-12);
 }
 
-TEST(DeadZone, LeavesStandstillAndFastWheelsAlone) {
-  EXPECT_EQ(with_dead_zone_compensation({0, 0, 0}, 0.05, 0.358).vx, 0.0);
-  EXPECT_NEAR(with_dead_zone_compensation({0.3, 0, 0.2}, 0.05, 0.358).vx, 0.3, 1e-12);
-  EXPECT_EQ(with_dead_zone_compensation({0.03, 0, 0}, 0.0, 0.358).vx, 0.03);
+TEST(DeadZone, LeavesMovingRoversStandstillAndLargeCommandsAlone) {
+  EXPECT_EQ(with_dead_zone_compensation({0.02, 0, 0}, {0.03, 0, 0}, 0.05, 0.358).vx, 0.02);
+  EXPECT_EQ(with_dead_zone_compensation({0, 0, 0}, {}, 0.05, 0.358).vx, 0.0);
+  EXPECT_EQ(with_dead_zone_compensation({0.002, 0, 0}, {}, 0.05, 0.358).vx, 0.002);
+  EXPECT_EQ(with_dead_zone_compensation({0.3, 0, 0.2}, {}, 0.05, 0.358).vx, 0.3);
+  EXPECT_EQ(with_dead_zone_compensation({0.03, 0, 0}, {}, 0.0, 0.358).vx, 0.03);
 }
 
 }  // namespace
