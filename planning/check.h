@@ -15,7 +15,7 @@ struct CheckOptions {
   MotionLimits limits;
   bool escape_allowed = false;      ///< may begin nearer to an obstacle than the radius
   bool unknown_is_blocked = true;   ///< map mode 0
-  double clearance_looked_m = 2.0;  ///< clearances are measured up to this
+  double clearance_looked_m = 0.6;  ///< clearances are measured up to this
 };
 
 /// What was found along the trajectory, in SI units; `problems` is empty when all of it is as
