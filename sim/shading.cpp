@@ -36,8 +36,9 @@ inline float rough_log2(float v) {
 /// The footprint's derivatives come from u = u_start + t (u . D), t = plane / (n . D). The longer
 /// of its two sides is sampled in several places, each as wide as the shorter one (in the manner
 /// of Heckbert 1986), so that floors seen at a grazing angle stay sharp across.
-inline void locate(const FaceView& face, const RowShading& row, int x0, int count, float* depth,
-                   float* cos_incidence, Lookups& out) {
+inline void locate(const FaceView& face, const RowShading& row, int x0, int count,
+                   float* __restrict depth, float* __restrict cos_incidence,
+                   Lookups& __restrict out) {
   const float n0 = face.n[0] + face.n[2] * row.y;
   const float u0 = face.u[0] + face.u[2] * row.y;
   const float v0 = face.v[0] + face.v[2] * row.y;
