@@ -27,8 +27,8 @@ struct AStarConfig {
 
 struct OmplConfig {
   int rrtconnect_iterations = 200000;
-  int rrtstar_iterations = 5000;
-  double step_m = 1.0;  ///< longest edge of the tree
+  int rrtstar_iterations = 10000;
+  double step_m = 2.0;  ///< longest edge of the tree
   double goal_bias = 0.05;
   void describe(maps::SettingsVisitor& v);
 };

@@ -10,6 +10,7 @@
 
 #include <memory>
 #include <random>
+#include <vector>
 
 namespace rovigo::planning {
 
@@ -25,16 +26,29 @@ TPoint2D point_of(const ob::State* state) {
   return {s->values[0], s->values[1]};
 }
 
-/// OMPL seeds its own samplers from a generator that is global to the process; ours has its seed
-/// to itself.
+std::vector<maps::Cell> passable_cells(const maps::Costmap& costmap) {
+  std::vector<maps::Cell> cells;
+  for (std::size_t i = 0; i < costmap.cells.size(); ++i) {
+    if (maps::Costmap::is_passable(costmap.cells[i])) cells.push_back(costmap.geometry.cell_of(i));
+  }
+  return cells;
+}
+
+/// Uniform over the passable cells: maps are mostly walls and unknown ground. OMPL seeds its own
+/// samplers from a generator that is global to the process; this one has its seed to itself.
 class SeededSampler final : public ob::StateSampler {
  public:
-  SeededSampler(const ob::StateSpace* space, std::uint64_t seed)
-      : ob::StateSampler(space), random_(seed) {}
+  SeededSampler(const ob::StateSpace* space, const FreeSpace& free, std::uint64_t seed)
+      : ob::StateSampler(space),
+        geometry_(free.geometry()),
+        cells_(passable_cells(free.costmap())),
+        random_(seed) {}
 
   void sampleUniform(ob::State* state) override {
-    const auto& bounds = space_->as<Plane>()->getBounds();
-    set(state, {bounds.low[0], bounds.low[1]}, {bounds.high[0], bounds.high[1]});
+    const std::uint64_t pick = random_() % cells_.size();  // the start's cell is one of them
+    const TPoint2D center = geometry_.center_of(cells_[pick]);
+    const double half = 0.5 * geometry_.resolution_m;
+    set(state, {center.x - half, center.y - half}, {center.x + half, center.y + half});
   }
   void sampleUniformNear(ob::State* state, const ob::State* near, double distance) override {
     const TPoint2D p = point_of(near);
@@ -56,6 +70,8 @@ class SeededSampler final : public ob::StateSampler {
     s->values[0] = std::uniform_real_distribution<double>(low.x, high.x)(random_);
     s->values[1] = std::uniform_real_distribution<double>(low.y, high.y)(random_);
   }
+  maps::GridGeometry geometry_;
+  std::vector<maps::Cell> cells_;
   std::mt19937_64 random_;
 };
 
@@ -102,8 +118,9 @@ ob::SpaceInformationPtr make_space(const FreeSpace& space, std::uint64_t seed) {
   bounds.setHigh(0, g.origin.x + g.width * g.resolution_m);
   bounds.setHigh(1, g.origin.y + g.height * g.resolution_m);
   plane->setBounds(bounds);
-  plane->setStateSamplerAllocator(
-      [seed](const ob::StateSpace* s) { return std::make_shared<SeededSampler>(s, seed); });
+  plane->setStateSamplerAllocator([seed, &space](const ob::StateSpace* s) {
+    return std::make_shared<SeededSampler>(s, space, seed);
+  });
   auto info = std::make_shared<ob::SpaceInformation>(plane);
   info->setStateValidityChecker(
       [&space](const ob::State* s) { return space.is_free(point_of(s)); });
