@@ -19,11 +19,11 @@ double yaw_rate_left(double speed, const DriveLimits& limits) {
   return std::max(0.0, 2 * (limits.max_wheel_speed_m_s - std::abs(speed)) / limits.track_width_m);
 }
 
+}  // namespace
+
 double faster_wheel(const TTwist2D& twist, double track_width_m) {
   return std::abs(twist.vx) + std::abs(twist.omega) * track_width_m / 2;
 }
-
-}  // namespace
 
 DriveLimits drive_limits(const ControlConfig& config, const maps::RobotModel& robot) {
   DriveLimits limits;
@@ -58,15 +58,15 @@ TTwist2D limited_command(const TTwist2D& desired, const TTwist2D& last, double d
   return {speed, 0.0, yaw_rate};
 }
 
-TTwist2D with_dead_zone_compensation(const TTwist2D& desired, const TTwist2D& present,
+TTwist2D with_dead_zone_compensation(const TTwist2D& desired, double standing_s,
                                      double dead_zone_m_s, double track_width_m) {
-  constexpr double kWorthwhile = 0.1;   // of the dead zone: less is standstill
-  constexpr double kMovingShare = 0.5;  // moving wheels keep moving at less than they start with
+  constexpr double kWorthwhile = 0.1;  // of the dead zone: less is standstill
+  constexpr double kSurelyStandingS = 0.15;
   const double wanted = faster_wheel(desired, track_width_m);
-  if (!(dead_zone_m_s > 0.0) || wanted >= dead_zone_m_s || wanted < kWorthwhile * dead_zone_m_s) {
+  if (!(dead_zone_m_s > 0.0) || wanted >= dead_zone_m_s || wanted < kWorthwhile * dead_zone_m_s ||
+      standing_s < kSurelyStandingS) {
     return desired;
   }
-  if (faster_wheel(present, track_width_m) > kMovingShare * dead_zone_m_s) return desired;
   const double factor = dead_zone_m_s / wanted;
   return {desired.vx * factor, 0.0, desired.omega * factor};
 }

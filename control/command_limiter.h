@@ -24,10 +24,14 @@ DriveLimits drive_limits(const ControlConfig& config, const maps::RobotModel& ro
 TTwist2D limited_command(const TTwist2D& desired, const TTwist2D& last, double dt_s,
                          const DriveLimits& limits);
 
-/// Breaks stiction: while the rover stands (`present`), a desire whose faster wheel would stay
-/// within the dead zone is enlarged, keeping its curvature, until that wheel starts. Desires below
-/// a tenth of it count as standstill; once the rover moves, they are left alone.
-TTwist2D with_dead_zone_compensation(const TTwist2D& desired, const TTwist2D& present,
+/// Rim speed of the faster wheel, m/s.
+double faster_wheel(const TTwist2D& twist, double track_width_m);
+
+/// Breaks stiction: once the rover has stood for a moment (`standing_s`), a desire whose faster
+/// wheel would stay within the dead zone is enlarged, keeping its curvature, until that wheel
+/// starts. Desires below a tenth of it count as standstill. The moment keeps a drive with less
+/// stiction than assumed from being pushed while it still rolls.
+TTwist2D with_dead_zone_compensation(const TTwist2D& desired, double standing_s,
                                      double dead_zone_m_s, double track_width_m);
 
 }  // namespace rovigo::control

@@ -19,6 +19,22 @@ TPose2D moved(const TPose2D& pose, const TTwist2D& twist, double dt_s) {
 
 }  // namespace
 
+/// The command without the wheels that stiction holds.
+TTwist2D PosePredictor::what_the_wheels_follow() const {
+  constexpr double kStandingShare = 0.25, kKineticShare = 0.4;  // of the dead zone
+  const double dead_zone = drive_.dead_zone_m_s, half = drive_.track_width_m / 2;
+  if (!(dead_zone > 0.0)) return command_;
+  const auto followed = [&](double wanted, double present) {
+    const bool stands = std::abs(present) < kStandingShare * dead_zone;
+    return std::abs(wanted) < (stands ? 1.0 : kKineticShare) * dead_zone * 0.999 ? 0.0 : wanted;
+  };
+  const double left =
+      followed(command_.vx - half * command_.omega, modelled_.vx - half * modelled_.omega);
+  const double right =
+      followed(command_.vx + half * command_.omega, modelled_.vx + half * modelled_.omega);
+  return {(left + right) / 2, 0.0, (right - left) / (2 * half)};
+}
+
 void PosePredictor::advance(double now_s) {
   if (!started_) {
     started_ = true;
@@ -28,14 +44,16 @@ void PosePredictor::advance(double now_s) {
   const double dt = now_s - now_s_;
   if (!(dt > 0.0)) return;
   // First-order lag, solved exactly over the interval: its mean and its end value.
-  const double decay = lag_s_ > 0.0 ? std::exp(-dt / lag_s_) : 0.0;
-  const double mean_share = lag_s_ > 0.0 ? lag_s_ / dt * (1.0 - decay) : 0.0;
-  const TTwist2D gap(modelled_.vx - command_.vx, 0.0, modelled_.omega - command_.omega);
+  const double lag = drive_.lag_s, delay = drive_.command_delay_s;
+  const double decay = lag > 0.0 ? std::exp(-dt / lag) : 0.0;
+  const double mean_share = lag > 0.0 ? lag / dt * (1.0 - decay) : 0.0;
+  const TTwist2D target = what_the_wheels_follow();
+  const TTwist2D gap(modelled_.vx - target.vx, 0.0, modelled_.omega - target.omega);
   motions_.push_back(
-      {now_s_ + delay_s_,
-       now_s + delay_s_,
-       {command_.vx + gap.vx * mean_share, 0.0, command_.omega + gap.omega * mean_share}});
-  modelled_ = {command_.vx + gap.vx * decay, 0.0, command_.omega + gap.omega * decay};
+      {now_s_ + delay,
+       now_s + delay,
+       {target.vx + gap.vx * mean_share, 0.0, target.omega + gap.omega * mean_share}});
+  modelled_ = {target.vx + gap.vx * decay, 0.0, target.omega + gap.omega * decay};
   now_s_ = now_s;
   while (!motions_.empty() && motions_.front().to_s < now_s_ - kMemoryS) motions_.pop_front();
 }

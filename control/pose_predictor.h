@@ -7,12 +7,19 @@
 
 namespace rovigo::control {
 
-/// Dead reckoning on commands: the drive is taken as a first-order lag behind a dead time, with a
-/// gain on turns (the wheels scrub). Poses correct it at the time they held.
+/// What is assumed of the drive: a first-order lag behind a dead time, and stiction.
+struct DriveModel {
+  double lag_s = 0.06;
+  double command_delay_s = 0.0;
+  double dead_zone_m_s = 0.0;  ///< rim speed that a standing wheel needs to start
+  double track_width_m = 0.358;
+};
+
+/// Dead reckoning on commands with the drive's model and a gain on turns (the wheels scrub). Poses
+/// correct it at the time they held.
 class PosePredictor {
  public:
-  PosePredictor(double drive_lag_s, double command_delay_s)
-      : lag_s_(drive_lag_s), delay_s_(command_delay_s) {}
+  explicit PosePredictor(const DriveModel& drive) : drive_(drive) {}
 
   /// Brings the model up to `now_s` under the present command. Time never runs backwards.
   void advance(double now_s);
@@ -43,8 +50,9 @@ class PosePredictor {
   };
   static constexpr double kMemoryS = 2.0;
 
-  double lag_s_;
-  double delay_s_;
+  TTwist2D what_the_wheels_follow() const;
+
+  DriveModel drive_;
   double turn_gain_ = 1.0;
   bool started_ = false;
   double now_s_ = 0.0;

@@ -16,7 +16,8 @@ namespace {
 
 using maps::wrap_angle;
 
-constexpr double kStandstillS = 0.3;        ///< at rest this long before "reached" is said
+constexpr double kStandstillS = 0.3;  ///< at rest this long before "reached" is said
+constexpr double kStandingRimSpeedMS = 0.01;
 constexpr int kMostApproaches = 3;          ///< second tries at a missed goal
 constexpr double kLongestApproachM = 0.30;  ///< a goal missed by more needs a new plan
 
@@ -25,6 +26,11 @@ enum class PoseUse {
   kStop,    ///< it says that nobody knows where the rover is
   kIgnore,  ///< as if it had not come: old, repeated, not finite
 };
+
+DriveModel drive_model(const ControlConfig& config, const maps::RobotModel& robot) {
+  return {config.drive_lag_s, config.command_delay_s, config.dead_zone_speed_m_s,
+          robot.track_width_m};
+}
 
 bool at_rest(const TTwist2D& twist) {
   return std::abs(twist.vx) < 0.005 && std::abs(twist.omega) < 0.02;
@@ -57,7 +63,7 @@ struct TrajectoryTracker::Impl {
                      config_in.timeout_extra_s),
         follower(config_in, limits, std::move(trajectory)),
         goal(follower.goal()),
-        predictor(config_in.drive_lag_s, config_in.command_delay_s),
+        predictor(drive_model(config_in, robot)),
         watchdog(config_in.watchdog_s),
         monitor(config_in.stagnation_time_s) {}
 
@@ -92,6 +98,7 @@ struct TrajectoryTracker::Impl {
   double speed_cap_m_s = 0.0;
   TTwist2D last_command;
   double standing_since_s = -1.0;  ///< at the end of the trajectory; negative: not there
+  double standing_s = 0.0;         ///< for how long the wheels have not turned, as modelled
   int approaches = 0;
   double heading_error_rad = 0.0;
   double cross_track_error_m = 0.0;
@@ -184,6 +191,8 @@ TTwist2D TrajectoryTracker::Impl::follow(double now_s, double dt_s) {
   input.dt_s = dt_s;
   input.speed_cap_m_s = speed_cap_m_s;
   input.turn_gain = turn_gain.gain();
+  const bool stands = faster_wheel(input.twist, limits.track_width_m) < kStandingRimSpeedMS;
+  standing_s = stands ? standing_s + std::max(dt_s, 0.0) : 0.0;
   const FollowOutput out = follower.step(input);
   heading_error_rad = out.heading_error_rad;
   cross_track_error_m = out.cross_track_error_m;
@@ -193,7 +202,7 @@ TTwist2D TrajectoryTracker::Impl::follow(double now_s, double dt_s) {
                                 std::abs(out.heading_error_rad)})) {
     status = TrackStatus::kNoProgress;
   }
-  return with_dead_zone_compensation(out.wanted, input.twist, config.dead_zone_speed_m_s,
+  return with_dead_zone_compensation(out.wanted, standing_s, config.dead_zone_speed_m_s,
                                      limits.track_width_m);
 }
 

@@ -57,20 +57,20 @@ TEST(DriveLimits, TakeTheRobotsFiguresAndTheRimSpeed) {
 }
 
 TEST(DeadZone, StartsAStandingRoverOnTheCurveItWants) {
-  const TTwist2D out = with_dead_zone_compensation({0.02, 0, 0.05}, {}, 0.05, 0.358);
+  const TTwist2D out = with_dead_zone_compensation({0.02, 0, 0.05}, 1.0, 0.05, 0.358);
   EXPECT_NEAR(out.vx + out.omega * 0.179, 0.05, 1e-12);
   EXPECT_NEAR(out.omega / out.vx, 2.5, 1e-9);
-  const TTwist2D turn = with_dead_zone_compensation({0, 0, -0.1}, {}, 0.05, 0.358);
+  const TTwist2D turn = with_dead_zone_compensation({0, 0, -0.1}, 1.0, 0.05, 0.358);
   EXPECT_EQ(turn.vx, 0.0);
   EXPECT_NEAR(turn.omega * 0.179, -0.05, 1e-12);
 }
 
-TEST(DeadZone, LeavesMovingRoversStandstillAndLargeCommandsAlone) {
-  EXPECT_EQ(with_dead_zone_compensation({0.02, 0, 0}, {0.03, 0, 0}, 0.05, 0.358).vx, 0.02);
-  EXPECT_EQ(with_dead_zone_compensation({0, 0, 0}, {}, 0.05, 0.358).vx, 0.0);
-  EXPECT_EQ(with_dead_zone_compensation({0.002, 0, 0}, {}, 0.05, 0.358).vx, 0.002);
-  EXPECT_EQ(with_dead_zone_compensation({0.3, 0, 0.2}, {}, 0.05, 0.358).vx, 0.3);
-  EXPECT_EQ(with_dead_zone_compensation({0.03, 0, 0}, {}, 0.0, 0.358).vx, 0.03);
+TEST(DeadZone, LeavesRollingRoversStandstillAndLargeCommandsAlone) {
+  EXPECT_EQ(with_dead_zone_compensation({0.02, 0, 0}, 0.1, 0.05, 0.358).vx, 0.02);
+  EXPECT_EQ(with_dead_zone_compensation({0, 0, 0}, 1.0, 0.05, 0.358).vx, 0.0);
+  EXPECT_EQ(with_dead_zone_compensation({0.002, 0, 0}, 1.0, 0.05, 0.358).vx, 0.002);
+  EXPECT_EQ(with_dead_zone_compensation({0.3, 0, 0.2}, 1.0, 0.05, 0.358).vx, 0.3);
+  EXPECT_EQ(with_dead_zone_compensation({0.03, 0, 0}, 1.0, 0.0, 0.358).vx, 0.03);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ constexpr double kStepS = 0.01;
 
 TEST(PosePredictor, FollowsAPlantItModelsExactly) {
   testing::Plant plant({.lag_s = 0.08, .command_delay_s = 0.05}, {1, 2, 3});
-  PosePredictor predictor(0.08, 0.05);
+  PosePredictor predictor({.lag_s = 0.08, .command_delay_s = 0.05});
   predictor.reset(0.0, plant.pose());
   predictor.advance(0.0);
   for (int i = 0; i < 150; ++i) {
@@ -30,7 +30,7 @@ TEST(PosePredictor, FollowsAPlantItModelsExactly) {
 }
 
 TEST(PosePredictor, BringsAnOldPoseUpToDate) {
-  PosePredictor predictor(0.0, 0.0);
+  PosePredictor predictor({.lag_s = 0.0, .command_delay_s = 0.0});
   predictor.advance(0.0);
   predictor.set_command({0.4, 0, 0});
   for (int i = 1; i <= 50; ++i) predictor.advance(i * kStepS);
@@ -40,7 +40,7 @@ TEST(PosePredictor, BringsAnOldPoseUpToDate) {
 }
 
 TEST(PosePredictor, TurnsOnAnArc) {
-  PosePredictor predictor(0.0, 0.0);
+  PosePredictor predictor({.lag_s = 0.0, .command_delay_s = 0.0});
   predictor.advance(0.0);
   predictor.reset(0.0, {0, 0, 0});
   predictor.set_command({0.5, 0, 0.5});
@@ -51,7 +51,7 @@ TEST(PosePredictor, TurnsOnAnArc) {
 }
 
 TEST(PosePredictor, TakesItsShareOfACorrectionTheShortWayRound) {
-  PosePredictor predictor(0.05, 0.0);
+  PosePredictor predictor({.lag_s = 0.05, .command_delay_s = 0.0});
   predictor.reset(0.0, {0, 0, maps::kPi - 0.1});
   predictor.correct(0.0, {1, 0, -maps::kPi + 0.1}, 0.5);
   EXPECT_NEAR(predictor.at(0.0).x, 0.5, 1e-12);
@@ -59,7 +59,7 @@ TEST(PosePredictor, TakesItsShareOfACorrectionTheShortWayRound) {
 }
 
 TEST(PosePredictor, IgnoresAClockThatRunsBackwards) {
-  PosePredictor predictor(0.05, 0.0);
+  PosePredictor predictor({.lag_s = 0.05, .command_delay_s = 0.0});
   predictor.advance(5.0);
   predictor.set_command({0.4, 0, 0});
   predictor.advance(4.0);
@@ -67,9 +67,23 @@ TEST(PosePredictor, IgnoresAClockThatRunsBackwards) {
   EXPECT_EQ(predictor.at(5.0).x, 0.0);
 }
 
+TEST(PosePredictor, KnowsThatStictionHoldsAStandingWheel) {
+  PosePredictor predictor({.lag_s = 0.05, .dead_zone_m_s = 0.05});
+  predictor.reset(0.0, {0, 0, 0});
+  predictor.advance(0.0);
+  predictor.set_command({0.04, 0, 0});
+  predictor.advance(1.0);
+  EXPECT_EQ(predictor.at(1.0).x, 0.0);
+  predictor.set_command({0.06, 0, 0});
+  predictor.advance(2.0);
+  predictor.set_command({0.04, 0, 0});  // moving already: goes on
+  predictor.advance(3.0);
+  EXPECT_NEAR(predictor.twist().vx, 0.04, 1e-6);
+}
+
 TEST(TurnGain, LearnsWhatScrubbingEats) {
   testing::Plant plant({.yaw_gain = 0.85}, {});
-  PosePredictor predictor(0.06, 0.0);
+  PosePredictor predictor({.lag_s = 0.06, .command_delay_s = 0.0});
   TurnGainEstimator estimator;
   predictor.advance(0.0);
   for (int i = 0; i < 500; ++i) {
@@ -83,7 +97,7 @@ TEST(TurnGain, LearnsWhatScrubbingEats) {
 }
 
 TEST(TurnGain, StaysWithinBoundsOverJumpsOfTheEstimate) {
-  PosePredictor predictor(0.06, 0.0);
+  PosePredictor predictor({.lag_s = 0.06, .command_delay_s = 0.0});
   TurnGainEstimator estimator;
   predictor.advance(0.0);
   predictor.set_command({0, 0, 0.5});
@@ -96,7 +110,7 @@ TEST(TurnGain, StaysWithinBoundsOverJumpsOfTheEstimate) {
 }
 
 TEST(TurnGain, KnowsNothingFromStraightDriving) {
-  PosePredictor predictor(0.06, 0.0);
+  PosePredictor predictor({.lag_s = 0.06, .command_delay_s = 0.0});
   TurnGainEstimator estimator;
   predictor.advance(0.0);
   predictor.set_command({0.4, 0, 0.01});
