@@ -15,7 +15,8 @@ using testing::HasSubstr;
 
 TEST(Config, DefaultsAreInsideTheirOwnRanges) {
   std::vector<std::string> as_written;
-  for (const auto& row : list_settings(RovigoConfig{})) as_written.push_back(row.key + "=" + row.value);
+  for (const auto& row : list_settings(RovigoConfig{}))
+    as_written.push_back(row.key + "=" + row.value);
   EXPECT_NO_THROW(load_config(std::nullopt, as_written));
 }
 
@@ -24,7 +25,8 @@ TEST(Config, EverySettingHasAnExplanationAndAUniqueName) {
   for (const auto& row : list_settings(RovigoConfig{})) {
     EXPECT_TRUE(keys.insert(row.key).second) << row.key;
     EXPECT_GT(row.help.size(), 10u) << row.key;
-    EXPECT_TRUE(row.type == "text" || row.type == "true/false" || !row.range.empty()) << row.key << " has no range";
+    EXPECT_TRUE(row.type == "text" || row.type == "true/false" || !row.range.empty())
+        << row.key << " has no range";
   }
 }
 
@@ -36,12 +38,14 @@ TEST(Config, FewerThanTwentySettingsFaceAUser) {
 }
 
 TEST(Config, TheLastAssignmentWins) {
-  const auto config = load_config(std::nullopt, {"robot.max_speed_m_s=0.2", "robot.max_speed_m_s=0.3"});
+  const auto config =
+      load_config(std::nullopt, {"robot.max_speed_m_s=0.2", "robot.max_speed_m_s=0.3"});
   EXPECT_DOUBLE_EQ(config.robot.max_speed_m_s, 0.3);
 }
 
 TEST(Config, TheRobotsRadiusIsTheInflationsRadius) {
-  EXPECT_DOUBLE_EQ(load_config(std::nullopt, {"robot.robot_radius_m=0.25"}).inflation.robot_radius_m, 0.25);
+  EXPECT_DOUBLE_EQ(
+      load_config(std::nullopt, {"robot.robot_radius_m=0.25"}).inflation.robot_radius_m, 0.25);
 }
 
 TEST(Config, EveryProblemIsListedAtOnceWithTheNearestKey) {
@@ -58,7 +62,8 @@ TEST(Config, TheDocumentedSettingsAreFresh) {
   std::ifstream in(ROVIGO_SOURCE_DIR "/app/SETTINGS.md");
   std::ostringstream text;
   text << in.rdbuf();
-  EXPECT_EQ(text.str(), settings_markdown()) << "run: build/release/rovigo config --markdown > app/SETTINGS.md";
+  EXPECT_EQ(text.str(), settings_markdown())
+      << "run: build/release/rovigo config --markdown > app/SETTINGS.md";
 }
 
 }  // namespace

@@ -1,0 +1,191 @@
+// rovigo drive: plans, then drives the plan in the simulator on the estimator's poses.
+
+#include <nlohmann/json.hpp>
+
+#include "app/commands/options.h"
+#include "app/plan_query.h"
+#include "app/report/drive_report.h"
+#include "app/resources.h"
+#include "app/simulated_drive.h"
+#include "maps/error.h"
+
+namespace rovigo::app {
+
+namespace {
+
+constexpr double kRaisedWallHeightM = 1.0;
+
+/// Where the drive happens: the world asked for, the map's own, or walls raised from its cells.
+struct Ground {
+  sim::World world;
+  std::string name;
+  TPose2D world_from_map;
+};
+
+Ground open_ground(const DriveOptions& options, const maps::SavedMap& map) {
+  const auto& origin = map.metadata.simulation;
+  const TPose2D world_from_map = origin ? origin->world_from_map : TPose2D();
+  if (options.world) return {open_world(*options.world), *options.world, world_from_map};
+  if (origin) return {open_world(origin->world), origin->world, world_from_map};
+  return {sim::World::from_grid(map.grid, kRaisedWallHeightM), "walls raised from the map",
+          TPose2D()};
+}
+
+std::unique_ptr<PoseSource> open_pose_source(const std::string& kind, const RovigoConfig& config,
+                                             const Ground& ground, const maps::SavedMap& map,
+                                             const sim::Simulator& simulator,
+                                             const DriveOptions& options, const TPose2D& start) {
+  slam::Rig rig;
+  rig.camera = simulator.rig().camera;
+  rig.base_from_camera = simulator.rig().base_from_camera;
+  rig.has_extrinsics = rig.has_wheels = rig.has_imu = true;
+  if (kind == "slam") {
+    if (map.keyframes.empty()) {
+      throw maps::InputError(
+          options.map.string() +
+          ": has no keyframes to localise in; use --pose odometry, perturbed or truth");
+    }
+    return slam_poses(config.slam, rig, map, start);
+  }
+  if (kind == "truth") return true_poses(simulator, ground.world_from_map);
+  if (kind == "perturbed") {
+    return perturbed_poses(simulator, ground.world_from_map, open_scenario(options.scenario),
+                           options.seed);
+  }
+  return odometry_poses(config.slam, rig, map.grid, start);
+}
+
+/// How a drive ended, as status, code and one sentence.
+struct Outcome {
+  std::string status;
+  int code = 0;
+  std::string message;
+};
+
+Outcome outcome_of(const control::DriveLog& log, const control::DriveMetrics& m) {
+  if (log.contact_events > 0) {
+    return {"collision", 106,
+            "touched an obstacle " + std::to_string(log.contact_events) + " times on the way"};
+  }
+  switch (log.status) {
+    case control::TrackStatus::kReached:
+      return {"ok", 0,
+              "reached the goal, " + with_unit(m.final_position_error_m, 3, "m") + " off, after " +
+                  with_unit(m.driven_length_m, 2, "m") + " and " + with_unit(m.duration_s, 1, "s")};
+    case control::TrackStatus::kPoseLost:
+      return {"pose_lost", 104,
+              "stopped: no usable pose for too long; is the map still true to the place?"};
+    case control::TrackStatus::kNoProgress:
+      return {"no_progress", 105, "stopped: the rover was commanded to move and did not"};
+    case control::TrackStatus::kTimedOut:
+      return {"timed_out", 107, "stopped: the drive took far longer than planned"};
+    case control::TrackStatus::kRunning:
+      break;
+  }
+  return {"not_finished", 107, "the drive did not finish"};
+}
+
+nlohmann::ordered_json drive_json(const Outcome& outcome, const control::DriveLog& log,
+                                  const control::DriveMetrics& m) {
+  return {{"status", outcome.status},
+          {"code", outcome.code},
+          {"message", outcome.message},
+          {"path_length_m", m.path_length_m},
+          {"driven_length_m", m.driven_length_m},
+          {"duration_s", m.duration_s},
+          {"cross_track_rms_m", m.cross_track_rms_m},
+          {"cross_track_max_m", m.cross_track_max_m},
+          {"final_position_error_m", m.final_position_error_m},
+          {"final_heading_error_rad", m.final_heading_error_rad},
+          {"estimate_rms_m", m.estimate_rms_m},
+          {"collisions", log.contact_events},
+          {"log_hash", log_hash(log)}};
+}
+
+std::vector<Row> drive_rows(const control::DriveLog& log, const control::DriveMetrics& m) {
+  return {{"driven", with_unit(m.driven_length_m, 2, "m") + " of " +
+                         with_unit(m.path_length_m, 2, "m planned") + ", " +
+                         with_unit(m.duration_s, 1, "s")},
+          {"cross-track", with_unit(m.cross_track_rms_m, 4, "m RMS") + ", " +
+                              with_unit(m.cross_track_max_m, 4, "m at most")},
+          {"at the goal",
+           with_unit(m.final_position_error_m, 4, "m") +
+               (m.goal_heading_given ? ", " + with_unit(m.final_heading_error_rad, 4, "rad") : "")},
+          {"pose estimate", with_unit(m.estimate_rms_m, 4, "m RMS off the truth")},
+          {"collisions", std::to_string(log.contact_events)},
+          {"log hash", log_hash(log)}};
+}
+
+}  // namespace
+
+int run_drive(const DriveOptions& options) {
+  const Console console(options.json);
+  const RovigoConfig config =
+      with_route_options(load_config(options.config, options.set), options.route);
+  const maps::SavedMap map = open_planning_map(options.map, console);
+  planning::PlanRequest request = plan_request(options.route, map);
+  request.seed = options.seed;
+  const planning::Planner planner(map.grid, config.robot, config.inflation, config.planning);
+  const TimedPlan plan = timed_plan(planner, request);
+  if (plan.result.status != planning::PlanStatus::kOk) {
+    console.result(plan_json(plan), plan_message(plan.result), plan_rows(plan));
+    return kDidNotSucceed;
+  }
+  console.say(plan_message(plan.result));
+
+  const Ground ground = open_ground(options, map);
+  const std::string pose_kind = options.pose.value_or(map.keyframes.empty() ? "odometry" : "slam");
+  const TPose2D start = plan.result.trajectory.points.front().pose;
+  sim::SimulatorOptions simulation;
+  simulation.robot = config.robot;
+  simulation.scenario = open_scenario(options.scenario);
+  simulation.world_from_base = maps::compose(ground.world_from_map, start);
+  simulation.seed = options.seed;
+  simulation.camera_rate_hz = 15.0;
+  simulation.camera_enabled = pose_kind == "slam" || pose_kind == "odometry";
+  sim::Simulator simulator(ground.world, simulation);
+  const auto poses = open_pose_source(pose_kind, config, ground, map, simulator, options, start);
+
+  control::TrajectoryTracker tracker(config.control, config.robot, plan.result.trajectory);
+  control::DriveLog log;
+  {
+    Progress progress("driving");
+    log = drive_in_simulator(
+        simulator, ground.world_from_map, *poses, tracker, plan.result.trajectory.duration_s(),
+        {.progress = [&](double share) { progress.update(share); }, .observation = {}});
+  }
+  const control::CommandLimits limits{config.robot.max_speed_m_s, config.robot.max_yaw_rate_rad_s};
+  const control::DriveMetrics metrics = control::measure(log, plan.result.trajectory, request.goal,
+                                                         request.goal_heading_given, limits);
+  const Outcome outcome = outcome_of(log, metrics);
+  const auto object = drive_json(outcome, log, metrics);
+
+  if (options.report) {
+    DriveReportInput report;
+    report.title = "Drive to (" + with_unit(request.goal.x, 2, "") + ", " +
+                   with_unit(request.goal.y, 2, "") + ")";
+    report.summary = outcome.message;
+    report.succeeded = outcome.code == 0;
+    report.grid = map.grid;
+    report.layers = plan_layers(request, plan.result);
+    report.planned = plan.result.trajectory;
+    report.log = log;
+    report.metrics = metrics;
+    report.limits = limits;
+    report.checks = {{"Cross-track error, RMS", metrics.cross_track_rms_m, 0.03, "m"},
+                     {"Final position error", metrics.final_position_error_m, 0.05, "m"},
+                     {"Collisions", static_cast<double>(log.contact_events), 0.0, ""}};
+    report.facts = {{"Map", options.map.filename().string()},
+                    {"World", ground.name},
+                    {"Pose source", pose_kind},
+                    {"Scenario", options.scenario},
+                    {"Seed", std::to_string(options.seed)}};
+    report.drive_json = object.dump(2);
+    write_drive_report(*options.report, report);
+    console.say("report: " + (*options.report / "index.html").string());
+  }
+  console.result(object, outcome.message, drive_rows(log, metrics));
+  return outcome.code == 0 ? kDone : kDidNotSucceed;
+}
+
+}  // namespace rovigo::app

@@ -1,0 +1,22 @@
+#pragma once
+// Worlds, routes and scenarios by name or by path.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "sim/route.h"
+#include "sim/scenario.h"
+#include "sim/world.h"
+
+namespace rovigo::app {
+
+/// A name in sim/worlds, "random:SEED", or a path to an SDF file. Throws InputError naming the
+/// worlds there are.
+sim::World open_world(const std::string& name_or_path);
+/// A name in sim/routes, or a path to a YAML file.
+sim::Route open_route(const std::string& name_or_path);
+/// A name in sim/scenarios, or a path to a YAML file.
+sim::Scenario open_scenario(const std::string& name_or_path);
+
+}  // namespace rovigo::app

@@ -1,0 +1,118 @@
+#include "app/simulated_drive.h"
+
+#include <openssl/evp.h>
+
+#include <array>
+#include <bit>
+#include <memory>
+#include <stdexcept>
+
+namespace rovigo::app {
+
+namespace {
+
+constexpr int kStepsPerCommand = 2;  // 120 Hz on a 240 Hz simulator
+constexpr double kStandBeforeS = 1.0;
+constexpr double kStandAfterS = 0.5;
+
+/// One simulated drive, advanced a command period at a time.
+class Loop {
+ public:
+  Loop(sim::Simulator& simulator, const TPose2D& world_from_map, PoseSource& poses,
+       const DriveHooks& hooks)
+      : simulator_(simulator),
+        map_from_world_(maps::inverse(world_from_map)),
+        poses_(poses),
+        hooks_(hooks) {}
+
+  void advance(const TTwist2D& command) {
+    for (int i = 0; i < kStepsPerCommand; ++i) {
+      simulator_.step(command);
+      for (const auto& observation : simulator_.take_observations()) {
+        poses_.observe(*observation);
+        if (hooks_.observation) hooks_.observation(*observation);
+      }
+    }
+  }
+  void stand_still(double seconds) {
+    const double until = simulator_.time_s() + seconds;
+    while (simulator_.time_s() < until) advance(TTwist2D());
+  }
+  control::DriveStep step(control::TrajectoryTracker& tracker, double begin_s,
+                          control::TrackStatus& status) {
+    const double now = simulator_.time_s();
+    const control::PoseInput pose = poses_.pose(now);
+    const control::TrackerOutput out = tracker.step(now, pose);
+    status = out.status;
+    control::DriveStep step;
+    step.time_s = now - begin_s;
+    step.true_pose =
+        maps::compose(map_from_world_, TPose2D(simulator_.truth().world_from_base.asTPose()));
+    step.estimated_pose = pose.map_from_base;
+    step.quality = pose.quality;
+    step.sigma_position_m = pose.sigma_position_m;
+    step.command = out.command;
+    step.true_twist = simulator_.truth().twist;
+    step.reference = out.reference;
+    step.heading_error_rad = out.heading_error_rad;
+    step.cross_track_error_m = out.cross_track_error_m;
+    return step;
+  }
+
+ private:
+  sim::Simulator& simulator_;
+  TPose2D map_from_world_;
+  PoseSource& poses_;
+  const DriveHooks& hooks_;
+};
+
+}  // namespace
+
+control::DriveLog drive_in_simulator(sim::Simulator& simulator, const TPose2D& world_from_map,
+                                     PoseSource& poses, control::TrajectoryTracker& tracker,
+                                     double planned_duration_s, const DriveHooks& hooks) {
+  Loop loop(simulator, world_from_map, poses, hooks);
+  control::DriveLog log;
+  loop.stand_still(kStandBeforeS);
+  const int contacts_before = simulator.truth().contact_events;
+  const double begin_s = simulator.time_s();
+  while (log.status == control::TrackStatus::kRunning) {
+    log.steps.push_back(loop.step(tracker, begin_s, log.status));
+    loop.advance(log.steps.back().command);
+    if (hooks.progress && planned_duration_s > 0.0) {
+      hooks.progress(log.steps.back().time_s / planned_duration_s);
+    }
+  }
+  loop.stand_still(kStandAfterS);
+  log.contact_events = simulator.truth().contact_events - contacts_before;
+  return log;
+}
+
+std::string log_hash(const control::DriveLog& log) {
+  static_assert(std::endian::native == std::endian::little,
+                "the hash is over little-endian doubles");
+  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(),
+                                                                        EVP_MD_CTX_free);
+  if (!context || EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) != 1) {
+    throw std::runtime_error("SHA-256 is not available");
+  }
+  for (std::size_t i = 0; i < log.steps.size(); ++i) {
+    const control::DriveStep& s = log.steps[i];
+    const std::array<double, 9> row{static_cast<double>(i), s.true_pose.x,      s.true_pose.y,
+                                    s.true_pose.phi,        s.estimated_pose.x, s.estimated_pose.y,
+                                    s.estimated_pose.phi,   s.command.vx,       s.command.omega};
+    EVP_DigestUpdate(context.get(), row.data(), sizeof row);
+  }
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned int size = 0;
+  EVP_DigestFinal_ex(context.get(), digest.data(), &size);
+  std::string hex;
+  constexpr char kDigits[] = "0123456789abcdef";
+  for (unsigned int i = 0; i < size; ++i) {
+    hex += kDigits[digest[i] >> 4];
+    hex += kDigits[digest[i] & 15];
+  }
+  return hex;
+}
+
+}  // namespace rovigo::app
