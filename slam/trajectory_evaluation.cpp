@@ -13,7 +13,7 @@ namespace {
 constexpr double kAssociation_s = 0.01;
 constexpr double kCoverage_s = 0.02;
 constexpr double kRpeStep_s = 1.0;
-constexpr double kRpeTolerance_s = 0.05;  // how far from one second apart two poses may be
+constexpr double kRpeTolerance_s = 0.02;  // how far from one second apart two poses may be
 
 struct PosePair {
   double time_s = 0.0;

@@ -168,8 +168,7 @@ cv::Mat decode_color(std::string_view bytes, std::string& problem) {
   }
   if (!problem.empty()) return {};
   cv::Mat image;
-  const int flags = header.channels == 1 ? cv::IMREAD_ANYCOLOR : cv::IMREAD_COLOR;
-  if (!decode(bytes, flags, image)) problem = "an image that does not decode";
+  if (!decode(bytes, cv::IMREAD_COLOR, image)) problem = "an image that does not decode";
   return image;
 }
 

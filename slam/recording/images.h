@@ -9,8 +9,9 @@
 
 namespace rovigo::slam {
 
-/// The colour image, 8-bit BGR or grey, as a view: no copy, valid while `scan` lives and its image
-/// is not replaced. Empty when the observation has none. Not to be written to.
+/// The colour image, 8-bit BGR (the readers make three channels of grey), as a view: no copy, valid
+/// while `scan` lives and its image is not replaced. Empty when the observation has none. Not to be
+/// written to.
 cv::Mat color_view(const mrpt::obs::CObservation3DRangeScan& scan);
 
 /// The depth image, CV_16UC1 in units of `scan.rangeUnits` metres, 0 = no return, as a view like
@@ -36,7 +37,7 @@ struct EncodedImage {
 /// beforehand what is wrong. Images beyond 8192 pixels a side are refused.
 EncodedImage inspect_image(std::string_view bytes);
 
-/// Decodes a colour image (PNG or JPEG, 8-bit) to BGR or grey as stored. On failure the result is
+/// Decodes an 8-bit PNG or JPEG to BGR, grey ones too. On failure the result is
 /// empty and `problem` says why.
 cv::Mat decode_color(std::string_view bytes, std::string& problem);
 

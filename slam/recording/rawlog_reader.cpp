@@ -3,7 +3,6 @@
 #include <mrpt/img/CImage.h>
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationOdometry.h>
-#include <mrpt/obs/CRawlog.h>
 
 #include <algorithm>
 #include <map>
@@ -41,6 +40,18 @@ class TimeOrder {
   std::multimap<mrpt::Clock::time_point, CObservation::Ptr> waiting_;
 };
 
+/// The folder of a rawlog's external images, by MRPT's naming habits. (MRPT's own search loses a
+/// slash when the rawlog is given with a folder.)
+std::string images_folder(const fs::path& rawlog) {
+  std::error_code error;
+  const fs::path stem = rawlog.parent_path() / rawlog.stem();
+  for (const char* ending : {"_Images", "_images", "_IMAGES"}) {
+    const fs::path folder = stem.string() + ending;
+    if (fs::is_directory(folder, error)) return (folder / "").string();
+  }
+  return (rawlog.parent_path() / "Images" / "").string();
+}
+
 class RawlogReader final : public RecordingReader {
  public:
   RawlogReader(fs::path path, const OpenOptions& options);
@@ -73,7 +84,7 @@ RawlogReader::RawlogReader(fs::path path, const OpenOptions& options) : path_(st
   if (file_bytes_ == 0) throw maps::InputError(path_.string() + ": the file is empty");
   info_.name = path_.stem().string();
   info_.format = "rawlog";
-  mrpt::img::CImage::setImagesPathBase(mrpt::obs::CRawlog::detectImagesDirectory(path_.string()));
+  mrpt::img::CImage::setImagesPathBase(images_folder(path_));
   read_ahead(options);
   stream_ = std::make_unique<RawlogStream>(path_);
 }

@@ -71,6 +71,7 @@ void RawlogStream::end_with_damage() {
         ": not an MRPT rawlog, or damaged from the start; give a .rawlog file or "
         "a TUM directory");
   }
+  is_damaged_ = true;
   const bool is_cut = archive_.at_end() || archive_.is_damaged();
   warnings_.add(path_.filename().string() + (is_cut ? " is cut short" : " is damaged or foreign") +
                 " after " + std::to_string(objects_) + " objects (uncompressed byte " +

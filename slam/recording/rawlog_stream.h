@@ -31,6 +31,8 @@ class RawlogStream {
 
   const std::optional<RawlogHeader>& header() const { return header_; }
   std::uint64_t bytes_read() const { return archive_.bytes_read(); }
+  /// The file ended, or stopped making sense, before its end.
+  bool is_damaged() const { return is_damaged_; }
   int skipped_frames() const { return skipped_frames_; }
   /// Why the first frame that was left out was left out.
   const std::string& first_frame_problem() const { return first_frame_problem_; }
@@ -60,6 +62,7 @@ class RawlogStream {
   int skipped_frames_ = 0;
   std::string first_frame_problem_;
   bool is_done_ = false;
+  bool is_damaged_ = false;
   WarningList warnings_;
 };
 
