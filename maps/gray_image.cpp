@@ -1,5 +1,7 @@
 #include "maps/gray_image.h"
 
+#include <zlib.h>
+
 #include <cctype>
 #include <opencv2/imgcodecs.hpp>
 
@@ -12,13 +14,13 @@ namespace {
   throw InputError(name + ": " + why);
 }
 
-void check_size(const std::string& name, std::int64_t width, std::int64_t height) {
+std::string size_problem(std::int64_t width, std::int64_t height) {
   const bool fits = width > 0 && height > 0 && width <= kMaxGridSide && height <= kMaxGridSide &&
                     static_cast<std::size_t>(width * height) <= kMaxGridCells;
-  if (fits) return;
-  fail(name, "claims " + std::to_string(width) + " x " + std::to_string(height) +
-                 " pixels; a map has 1 to " + std::to_string(kMaxGridSide) +
-                 " on each side and at most " + std::to_string(kMaxGridCells) + " in all");
+  if (fits) return {};
+  return "claims " + std::to_string(width) + " x " + std::to_string(height) +
+         " pixels; a map has 1 to " + std::to_string(kMaxGridSide) + " on each side and at most " +
+         std::to_string(kMaxGridCells) + " in all";
 }
 
 /// Reads the whitespace-separated numbers of a PGM, passing over comments.
@@ -70,7 +72,7 @@ GrayImage decode_pgm(std::string_view bytes, const std::string& name) {
   scanner.skip(2);
   const std::int64_t width = scanner.number("width");
   const std::int64_t height = scanner.number("height");
-  check_size(name, width, height);
+  if (const auto problem = size_problem(width, height); !problem.empty()) fail(name, problem);
   const std::int64_t max_value = scanner.number("largest value");
   if (max_value < 1 || max_value > 65535) {
     fail(name, "its largest value is " + std::to_string(max_value) + ", outside 1 .. 65535");
@@ -134,9 +136,7 @@ void average_channels(const cv::Mat& mat, GrayImage& image) {
 }
 
 GrayImage decode_png(std::string_view bytes, const std::string& name) {
-  // Width and height stand at fixed places; OpenCV would take the memory before it looks further.
-  if (bytes.size() < 24) fail(name, "is cut off inside the PNG header");
-  check_size(name, big_endian_32(bytes, 16), big_endian_32(bytes, 20));
+  if (const auto problem = png_problem(bytes); !problem.empty()) fail(name, problem);
   const std::vector<std::uint8_t> buffer(bytes.begin(), bytes.end());
   cv::Mat mat;
   try {
@@ -158,6 +158,30 @@ GrayImage decode_png(std::string_view bytes, const std::string& name) {
 }
 
 }  // namespace
+
+std::string png_problem(std::string_view bytes) {
+  if (bytes.substr(0, kPngStart.size()) != kPngStart) return "is no PNG image";
+  if (bytes.size() < 33) return "is cut off inside the PNG header";
+  if (auto problem = size_problem(big_endian_32(bytes, 16), big_endian_32(bytes, 20));
+      !problem.empty()) {
+    return problem;
+  }
+  // Chunks: length, type, data, CRC-32 of type and data.
+  std::size_t at = kPngStart.size();
+  while (bytes.size() - at >= 12) {
+    const auto length = static_cast<std::size_t>(big_endian_32(bytes, at));
+    if (length > bytes.size() - at - 12) break;
+    const std::string_view type_and_data = bytes.substr(at + 4, 4 + length);
+    const auto crc =
+        ::crc32_z(0, reinterpret_cast<const Bytef*>(type_and_data.data()), type_and_data.size());
+    if (static_cast<std::int64_t>(crc) != big_endian_32(bytes, at + 8 + length)) {
+      return "is a damaged PNG (a checksum does not match)";
+    }
+    if (type_and_data.substr(0, 4) == "IEND") return {};
+    at += 12 + length;
+  }
+  return "is a PNG that is cut off";
+}
 
 GrayImage decode_gray_image(std::string_view bytes, const std::string& name) {
   if (bytes.empty()) fail(name, "is empty");

@@ -25,6 +25,11 @@ struct GrayImage {
 /// and for more pixels than a grid may have.
 GrayImage decode_gray_image(std::string_view bytes, const std::string& name);
 
+/// Empty for a PNG that is whole (sizes within a grid's, every chunk there and its CRC right), else
+/// what is wrong. To be asked before a PNG decoder, which prints, and takes whatever memory the
+/// header claims.
+std::string png_problem(std::string_view bytes);
+
 /// A binary PGM of 8-bit pixels, rows from the top, with one comment line where `comment` is given.
 std::string encode_pgm(int width, int height, const std::vector<std::uint8_t>& pixels,
                        const std::string& comment);

@@ -13,9 +13,11 @@ constexpr double kMaxRange = 6.0;  // the camera's; farther returns are clutter
 void save(octomap::OcTree& tree, FileName file) {
   tree.toMaxLikelihood();
   tree.prune();
-  // writeBinary(name) writes to the stream and then says true whatever became of it.
+  // The header is written here because OctoMap's own function for it prints to the terminal.
   std::ofstream out(file, std::ios::binary);
-  tree.writeBinaryConst(out);
+  out << "# Octomap OcTree binary file\nid " << tree.getTreeType() << "\nsize " << tree.size()
+      << "\nres " << tree.getResolution() << "\ndata\n";
+  if (tree.size() > 0) tree.writeBinaryData(out);
   out.flush();
   if (!out) throw std::runtime_error("OctoMap could not write the file");
 }

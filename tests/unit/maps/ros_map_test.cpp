@@ -161,9 +161,21 @@ TEST(RosMap, BadImagesAreNamed) {
   EXPECT_THAT(refusal(yaml(), "P2 2 1 9\n3 x  \n"), HasSubstr("pixel"));
   EXPECT_THAT(refusal(yaml(), "GIF89a....."), HasSubstr("neither a PGM"));
   EXPECT_THAT(refusal(yaml("", "none.pgm"), ""), HasSubstr("none.pgm"));
-  std::string png("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\x7f\xff\xff\xff\x7f\xff\xff\xff\x08\0\0\0\0", 30);
+  std::string png("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\x7f\xff\xff\xff\x7f\xff\xff\xff\x08\0\0\0\0xxxx",
+                  33);
   EXPECT_THAT(refusal(yaml(), png), HasSubstr("claims"));
   EXPECT_THAT(refusal(yaml(), png.substr(0, 12)), HasSubstr("cut off"));
+}
+
+TEST(RosMap, DamagedPngIsNamed) {
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", cv::Mat(40, 40, CV_8UC1, cv::Scalar(254)), png);
+  const std::string whole(png.begin(), png.end());
+  EXPECT_EQ(png_problem(whole), "");
+  EXPECT_THAT(refusal(yaml(), whole.substr(0, whole.size() - 14)), HasSubstr("cut off"));
+  std::string flipped = whole;
+  flipped[50] = static_cast<char>(flipped[50] ^ 4);
+  EXPECT_THAT(refusal(yaml(), flipped), HasSubstr("checksum"));
 }
 
 TEST(RosMap, SavedMapComesBackEqualInFullPrecision) {
