@@ -64,6 +64,27 @@ double squared_distance(const TPoint2D& a, const TPoint2D& b, const Box& box) {
 
 }  // namespace
 
+FreeSpace::FreeSpace(const OccupancyGrid& grid, const maps::Costmap& costmap, double radius_m)
+    : grid_(grid), costmap_(costmap), radius_m_(radius_m) {
+  const std::size_t n = costmap.cells.size();
+  if (radius_m <= 0.0) {
+    room_m_.assign(n, std::numeric_limits<float>::infinity());
+    return;
+  }
+  room_m_ = maps::distance_to_occupied(grid).meters;
+  for (float& room : room_m_) room -= static_cast<float>(radius_m);
+  OccupancyGrid unknown(costmap.geometry, OccupancyGrid::kFree);
+  bool any = false;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (costmap.cells[i] != maps::Costmap::kUnknown) continue;
+    unknown.cells[i] = OccupancyGrid::kOccupied;
+    any = true;
+  }
+  if (!any) return;
+  const maps::DistanceField to_unknown = maps::distance_to_occupied(unknown);
+  for (std::size_t i = 0; i < n; ++i) room_m_[i] = std::min(room_m_[i], to_unknown.meters[i]);
+}
+
 double FreeSpace::clearance(const TPoint2D& a, const TPoint2D& b, double limit_m) const {
   const auto& g = grid_.geometry;
   const Cell low = g.cell_at({std::min(a.x, b.x) - limit_m, std::min(a.y, b.y) - limit_m});
@@ -80,6 +101,46 @@ double FreeSpace::clearance(const TPoint2D& a, const TPoint2D& b, double limit_m
     }
   }
   return std::sqrt(best2);
+}
+
+double FreeSpace::clearance(const Path& path, double limit_m) const {
+  if (path.points.empty()) return limit_m;
+  // The segment with the least room is measured first, looking ever further; most others then need
+  // no measuring.
+  const auto segment = [&](std::size_t i) {
+    return std::pair(path.points[i > 0 ? i - 1 : 0], path.points[i]);
+  };
+  std::size_t narrowest = 0;
+  std::vector<double> room(path.points.size());
+  for (std::size_t i = 0; i < path.points.size(); ++i) {
+    const auto [a, b] = segment(i);
+    room[i] = least_room(a, b);
+    if (room[i] < room[narrowest]) narrowest = i;
+  }
+  double best = std::min(limit_m, 0.5);
+  for (; best < limit_m; best = std::min(limit_m, 2.0 * best)) {
+    const auto [a, b] = segment(narrowest);
+    const double found = clearance(a, b, best);
+    if (found < best) {
+      best = found;
+      break;
+    }
+  }
+  for (std::size_t i = 0; i < path.points.size(); ++i) {
+    if (std::max(radius_m_, 0.0) + room[i] >= best) continue;
+    const auto [a, b] = segment(i);
+    best = std::min(best, clearance(a, b, best));
+  }
+  return best;
+}
+
+double FreeSpace::least_room(const TPoint2D& a, const TPoint2D& b) const {
+  // Room changes by no more than the point moves.
+  const TPoint2D middle = mix(a, b, 0.5);
+  const Cell cell = geometry().cell_at(middle);
+  if (!geometry().contains(cell)) return -std::numeric_limits<double>::infinity();
+  return room_m_[geometry().index_of(cell)] - (maps::distance(middle, geometry().center_of(cell)) +
+                                               0.5 * maps::distance(a, b) + kClearanceTolerance);
 }
 
 bool FreeSpace::is_free(const TPoint2D& p, double margin_m) const {
@@ -104,16 +165,8 @@ bool FreeSpace::is_free(const TPoint2D& a, const TPoint2D& b, double margin_m) c
 }
 
 bool FreeSpace::chunk_is_clear(const TPoint2D& a, const TPoint2D& b, double margin_m) const {
-  // The clearance changes by no more than the point moves, so the field's value at the middle
-  // settles most chunks; the rest is measured.
-  const TPoint2D middle = mix(a, b, 0.5);
-  const Cell cell = geometry().cell_at(middle);
+  if (least_room(a, b) >= margin_m) return true;  // settles most chunks; the rest is measured
   const double need_m = radius_m_ + margin_m;
-  if (geometry().contains(cell)) {
-    const double slack = maps::distance(middle, geometry().center_of(cell)) +
-                         0.5 * maps::distance(a, b) + kClearanceTolerance;
-    if (field_.at(cell) - slack >= need_m) return true;
-  }
   return clearance(a, b, need_m) >= need_m - kClearanceTolerance;
 }
 
@@ -183,15 +236,15 @@ FreeSpace::Slope FreeSpace::slope(const TPoint2D& p) const {
   const int y1 = std::min(y0 + 1, g.height - 1);
   const double f = std::clamp(u - x0, 0.0, 1.0);
   const double h = std::clamp(v - y0, 0.0, 1.0);
-  const double d00 = field_.at({x0, y0});
-  const double d10 = field_.at({x1, y0});
-  const double d01 = field_.at({x0, y1});
-  const double d11 = field_.at({x1, y1});
-  if (!std::isfinite(d00)) return {.clearance_m = std::numeric_limits<double>::infinity()};
+  const double d00 = room_m_[g.index_of({x0, y0})];
+  const double d10 = room_m_[g.index_of({x1, y0})];
+  const double d01 = room_m_[g.index_of({x0, y1})];
+  const double d11 = room_m_[g.index_of({x1, y1})];
+  if (!std::isfinite(d00)) return {.room_m = std::numeric_limits<double>::infinity()};
   const double bottom = d00 + f * (d10 - d00);
   const double top = d01 + f * (d11 - d01);
   const double along_x = (1.0 - h) * (d10 - d00) + h * (d11 - d01);
-  return {.clearance_m = bottom + h * (top - bottom),
+  return {.room_m = bottom + h * (top - bottom),
           .gradient = {along_x / g.resolution_m, (top - bottom) / g.resolution_m}};
 }
 

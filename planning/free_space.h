@@ -20,20 +20,18 @@ inline constexpr double kClearanceTolerance = 1e-6;
 class FreeSpace {
  public:
   /// `radius_m` 0 or less: only the costmap counts (map mode kEverything).
-  FreeSpace(const maps::OccupancyGrid& grid, const maps::DistanceField& field,
-            const maps::Costmap& costmap, double radius_m)
-      : grid_(grid), field_(field), costmap_(costmap), radius_m_(radius_m) {}
+  FreeSpace(const maps::OccupancyGrid& grid, const maps::Costmap& costmap, double radius_m);
 
   const maps::GridGeometry& geometry() const { return costmap_.geometry; }
   const maps::Costmap& costmap() const { return costmap_; }
   double radius_m() const { return radius_m_; }
 
-  /// Metres from a point to the nearest occupied cell's edge, looked at up to `limit_m`.
-  double clearance(const TPoint2D& p, double limit_m) const {
-    return maps::clearance_at(grid_, field_, p, limit_m);
-  }
-  /// The same for the nearest point of a segment; exact.
+  /// Metres from a point to the nearest occupied cell's edge, looked at up to `limit_m`; exact.
+  double clearance(const TPoint2D& p, double limit_m) const { return clearance(p, p, limit_m); }
+  /// The same for the nearest point of a segment.
   double clearance(const TPoint2D& a, const TPoint2D& b, double limit_m) const;
+  /// The same for a polyline.
+  double clearance(const Path& path, double limit_m) const;
 
   /// Free with `margin_m` to spare?
   bool is_free(const TPoint2D& p, double margin_m = 0.0) const;
@@ -47,10 +45,10 @@ class FreeSpace {
   /// rule at half a cell. Only for segments on the grid.
   double cost(const TPoint2D& a, const TPoint2D& b, double soft_cost_weight) const;
 
-  /// Clearance interpolated between cell centres, with its gradient: fast and smooth enough to
-  /// push a path by, not exact. Infinity where there are no obstacles; 0 outside the grid.
+  /// Room to spare, interpolated between cell centres, with its gradient: fast and smooth enough
+  /// to push a path by, not exact. Infinity where nothing is in the way; 0 outside the grid.
   struct Slope {
-    double clearance_m = 0.0;
+    double room_m = 0.0;
     TPoint2D gradient{0.0, 0.0};
   };
   Slope slope(const TPoint2D& p) const;
@@ -60,14 +58,17 @@ class FreeSpace {
   std::optional<std::vector<TPoint2D>> way_round(const TPoint2D& a, const TPoint2D& b) const;
 
  private:
+  double least_room(const TPoint2D& a, const TPoint2D& b) const;
   bool chunk_is_clear(const TPoint2D& a, const TPoint2D& b, double margin_m) const;
   bool push_middle(const TPoint2D& a, const TPoint2D& b, int depth,
                    std::vector<TPoint2D>& out) const;
 
   const maps::OccupancyGrid& grid_;
-  const maps::DistanceField& field_;
   const maps::Costmap& costmap_;
   double radius_m_;
+  /// At cell centres: how far one may go from there in any direction before an occupied cell is
+  /// nearer than the radius or impassable unknown ground is entered; negative inside the band.
+  std::vector<float> room_m_;
 };
 
 /// Every segment of the polyline free?

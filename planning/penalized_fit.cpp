@@ -71,7 +71,7 @@ void solve(PenalizedFit& fit) {
   BandedSystem system(n);
   for (std::size_t i = 1; i + 1 < n; ++i) {
     system.add(i - 1, {1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0}, fit.weights[i], fit.targets[i], fit);
-    system.add(i - 1, {1.0, -2.0, 1.0}, fit.bending, {0.0, 0.0}, fit);
+    system.add(i - 1, {1.0, -2.0, 1.0}, fit.bending[i], {0.0, 0.0}, fit);
   }
   system.solve_into(fit);
 }

@@ -12,7 +12,7 @@ namespace rovigo::planning {
 struct PenalizedFit {
   std::vector<TPoint2D> targets;  ///< where the sites should be
   std::vector<double> weights;    ///< of their squared distances
-  double bending = 1.0;           ///< weight of |c[i-1] - 2 c[i] + c[i+1]|^2
+  std::vector<double> bending;    ///< weights of |c[i-1] - 2 c[i] + c[i+1]|^2
   std::vector<char> fixed;        ///< control points that stay as they are in `control`
   std::vector<TPoint2D> control;  ///< in: the fixed ones; out: all
 };

@@ -34,26 +34,6 @@ PlannerConfig validated(const PlannerConfig& config) {
   return config;
 }
 
-/// Distance from the path to the nearest occupied cell's edge, up to kClearanceReportedM.
-double smallest_clearance(const FreeSpace& space, const maps::DistanceField& field,
-                          const Path& path) {
-  const auto& g = space.geometry();
-  const auto roughly = [&](const TPoint2D& p, double sign) {
-    const maps::Cell cell = g.cell_at(p);
-    if (!g.contains(cell)) return 0.0;
-    return field.at(cell) + sign * (maps::distance(p, g.center_of(cell)) + kClearanceTolerance);
-  };
-  double best = kClearanceReportedM;
-  for (const TPoint2D& p : path.points) best = std::min(best, roughly(p, 1.0));
-  for (std::size_t i = 0; i < path.points.size(); ++i) {
-    const TPoint2D& a = path.points[i > 0 ? i - 1 : 0];
-    const TPoint2D& b = path.points[i];
-    if (roughly(b, -1.0) - maps::distance(a, b) >= best) continue;
-    best = std::min(best, space.clearance(a, b, best));
-  }
-  return best;
-}
-
 }  // namespace
 
 PlanningContext::PlanningContext(const maps::OccupancyGrid& g, const maps::RobotModel& r,
@@ -64,10 +44,8 @@ PlanningContext::PlanningContext(const maps::OccupancyGrid& g, const maps::Robot
       config(validated(c)),
       kind(parse_planner_kind(c.planner).value_or(PlannerKind::kAStar)),
       costmap(maps::inflate_safe(grid, i)),
-      field(maps::distance_to_occupied(grid)),
       search_grid(costmap, c.astar.connectivity),
-      space(grid, field, costmap,
-            i.map_mode == maps::MapMode::kEverything ? 0.0 : i.robot_radius_m) {}
+      space(grid, costmap, i.map_mode == maps::MapMode::kEverything ? 0.0 : i.robot_radius_m) {}
 
 PlanResult PlanQuery::run() {
   begin(PlanStage::kSearch);
@@ -269,8 +247,8 @@ void PlanQuery::measure() {
   driven.points.reserve(result_.trajectory.points.size());
   for (const auto& p : result_.trajectory.points)
     driven.points.push_back(maps::position_of(p.pose));
-  result_.min_clearance_m = smallest_clearance(context_.space, context_.field, driven) -
-                            context_.inflation.robot_radius_m;
+  result_.min_clearance_m =
+      context_.space.clearance(driven, kClearanceReportedM) - context_.inflation.robot_radius_m;
   if (result_.escape) {
     result_.message +=
         "The start is nearer to an obstacle than robot_radius_m or on unknown "

@@ -20,7 +20,6 @@ struct PlanningContext {
   PlannerConfig config;
   PlannerKind kind;
   maps::Costmap costmap;
-  maps::DistanceField field;
   SearchGrid search_grid;
   FreeSpace space;
 

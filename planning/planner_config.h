@@ -35,8 +35,8 @@ struct OmplConfig {
 
 struct SplineConfig {
   bool smooth = true;              ///< false: drive the shortened polyline, stop-turn-go
-  double max_curvature_1_m = 4.0;  ///< tighter bends become in-place turns
-  double control_spacing_m = 0.2;  ///< between control points before refinement
+  double max_curvature_1_m = 5.5;  ///< tighter bends become turns in place; there a wheel stands
+  double control_spacing_m = 0.1;  ///< between control points before refinement
   double sample_spacing_m = 0.02;  ///< of the points handed out
   void describe(maps::SettingsVisitor& v);
 };

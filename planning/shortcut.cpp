@@ -8,7 +8,8 @@ namespace {
 
 /// Straight segments may cost this much more than what they replace: steps between costs of
 /// neighbouring cells are no reason for a bend.
-constexpr double kCostSlack = 1.002;
+constexpr double kCostSlack = 1.005;
+constexpr double kCostSlackCells = 0.2;
 
 class StringPuller {
  public:
@@ -25,7 +26,8 @@ class StringPuller {
   bool is_straight(std::size_t from, std::size_t to) const {
     if (!space_.is_free(points_[from], points_[to])) return false;
     const double old_cost = cost_so_far_[to] - cost_so_far_[from];
-    return space_.cost(points_[from], points_[to], weight_) <= kCostSlack * old_cost;
+    return space_.cost(points_[from], points_[to], weight_) <=
+           kCostSlack * old_cost + kCostSlackCells * space_.geometry().resolution_m;
   }
 
   /// The furthest point that a straight segment from `from` reaches: doubling steps, then halving.

@@ -10,13 +10,16 @@ namespace rovigo::planning {
 namespace {
 
 constexpr double kSmoothingLengthM = 0.5;  // bends are spread over about this length to each side
-constexpr double kComfortM = 0.05;         // pushed this far beyond the radius where there is room
+constexpr double kMostLevels = 3.5;        // halvings of that length where there is no room
+constexpr double kTaperM = 0.25;           // path length per halving, so that lengths change slowly
+constexpr double kComfortM = 0.10;         // kept beyond the radius where there is room
 constexpr double kCurveMarginM = 5e-4;     // covers the sagitta between samples
+constexpr double kUnmovedM = 1e-6;         // per round; the margin above covers all rounds
 constexpr double kPivotTurnRad = 2.4;      // sharper vertices are turned at in place at once
-constexpr double kPinWeight = 1e7;
-constexpr int kPushRounds = 6;
-constexpr int kRepairRounds = 14;
-constexpr int kRefinements = 3;
+constexpr double kPinWeight = 1e6;         // of via points, against the bending weight
+constexpr int kPushRounds = 5;
+constexpr int kRepairRounds = 16;
+constexpr int kRefinements = 2;
 
 double heading(const TPoint2D& a, const TPoint2D& b) { return std::atan2(b.y - a.y, b.x - a.x); }
 
@@ -85,37 +88,56 @@ Sites make_sites(const Stretch& stretch, double spacing) {
   return sites;
 }
 
-/// Fits one stretch with one spacing of control points.
+/// Moves points that are nearer to an obstacle than comfortable away from it, except on the ridge
+/// between two obstacles.
+void push_from_obstacles(const FreeSpace& space, Sites& sites) {
+  if (space.radius_m() <= 0.0) return;
+  for (int round = 0; round < kPushRounds; ++round) {
+    for (std::size_t i = 1; i + 1 < sites.points.size(); ++i) {
+      if (sites.pinned[i]) continue;
+      const FreeSpace::Slope slope = space.slope(sites.points[i]);
+      const double missing = kComfortM - slope.room_m;
+      const double norm = std::hypot(slope.gradient.x, slope.gradient.y);
+      if (!(missing > 0.0) || norm < 0.5) continue;
+      const double push = 0.5 * missing / norm;
+      sites.points[i].x += push * slope.gradient.x;
+      sites.points[i].y += push * slope.gradient.y;
+    }
+  }
+}
+
+/// Fits one stretch with one spacing of control points. The smoothing length is reduced locally
+/// where the curve is not free, and eased again where it gets too tight.
 class CurveFit {
  public:
   CurveFit(const FreeSpace& space, const SplineConfig& config, const Stretch& stretch,
            double spacing)
-      : space_(space), config_(config), sites_(make_sites(stretch, spacing)) {
+      : space_(space), config_(config), spacing_(spacing), sites_(make_sites(stretch, spacing)) {
     const std::size_t n = sites_.points.size();
-    fit_.targets = sites_.points;
     fit_.control = sites_.points;
+    push_from_obstacles(space, sites_);
+    fit_.targets = sites_.points;
     fit_.weights.assign(n, 1.0);
+    fit_.bending.assign(n, 1.0);
+    levels_.assign(n, 0.0);
     fit_.fixed.assign(n, 0);
     fit_.fixed.front() = fit_.fixed.back() = 1;
-    for (std::size_t i = 1; i + 1 < n; ++i) {
-      if (sites_.pinned[i]) fit_.weights[i] = kPinWeight;
-    }
-    fit_.bending = std::pow(kSmoothingLengthM / spacing, 4.0);
-    const double reach = maps::distance(sites_.points[0], sites_.points[1]);
-    const double reach_back = maps::distance(sites_.points[n - 1], sites_.points[n - 2]);
-    if (stretch.start_heading) fix(1, sites_.points.front(), *stretch.start_heading, reach);
-    if (stretch.goal_heading) fix(n - 2, sites_.points.back(), *stretch.goal_heading, -reach_back);
+    const double reach = maps::distance(fit_.control[0], fit_.control[1]);
+    const double reach_back = maps::distance(fit_.control[n - 1], fit_.control[n - 2]);
+    if (stretch.start_heading) fix(1, fit_.control.front(), *stretch.start_heading, reach);
+    if (stretch.goal_heading) fix(n - 2, fit_.control.back(), *stretch.goal_heading, -reach_back);
   }
 
   /// The curve, when it can be made free and easy enough; else the place of the first trouble is
   /// left in `trouble()`.
   std::optional<CubicBSpline> run() {
-    for (int round = 0; round < kPushRounds + kRepairRounds; ++round) {
+    for (int round = 0; round < kRepairRounds; ++round) {
+      set_bending();
       solve(fit_);
-      push_from_obstacles();
-      if (round < kPushRounds) continue;
       const CubicBSpline curve = CubicBSpline::uniform(fit_.control);
-      if (!mend_spans(curve)) return curve;
+      const Mending mending = mend_spans(curve, std::exp2(-(round / 4)));
+      if (mending == Mending::kNothingToDo) return curve;
+      if (mending == Mending::kHopeless) break;
     }
     return std::nullopt;
   }
@@ -123,54 +145,72 @@ class CurveFit {
   const TPoint2D& trouble() const { return trouble_; }
 
  private:
+  enum class Verdict { kGood, kNotFree, kTooTight };
+  enum class Mending { kNothingToDo, kTried, kHopeless };
+
   void fix(std::size_t index, const TPoint2D& end, double heading_rad, double reach) {
     fit_.fixed[index] = 1;
     fit_.control[index] = {end.x + reach * std::cos(heading_rad),
                            end.y + reach * std::sin(heading_rad)};
   }
 
-  void push_from_obstacles() {
-    const double wanted = space_.radius_m() + kComfortM;
-    if (space_.radius_m() <= 0.0) return;
-    for (std::size_t i = 1; i + 1 < fit_.control.size(); ++i) {
-      if (sites_.pinned[i]) continue;
-      const auto& c = fit_.control;
-      const TPoint2D site{(c[i - 1].x + 4.0 * c[i].x + c[i + 1].x) / 6.0,
-                          (c[i - 1].y + 4.0 * c[i].y + c[i + 1].y) / 6.0};
-      const FreeSpace::Slope slope = space_.slope(site);
-      const double missing = wanted - slope.clearance_m;
-      const double norm = std::hypot(slope.gradient.x, slope.gradient.y);
-      if (!(missing > 0.0) || norm < 0.1) continue;  // on a ridge between two obstacles: leave it
-      const double push = 0.7 * missing / norm;
-      fit_.targets[i].x += push * slope.gradient.x;
-      fit_.targets[i].y += push * slope.gradient.y;
+  void set_bending() {
+    const double step = spacing_ / kTaperM;
+    for (std::size_t i = 1; i < levels_.size(); ++i) {
+      levels_[i] = std::max(levels_[i], levels_[i - 1] - step);
+    }
+    for (std::size_t i = levels_.size() - 1; i-- > 0;) {
+      levels_[i] = std::max(levels_[i], levels_[i + 1] - step);
+    }
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+      const double length = kSmoothingLengthM * std::exp2(-levels_[i]);
+      fit_.bending[i] = std::pow(length / spacing_, 4.0);
+      if (sites_.pinned[i]) fit_.weights[i] = kPinWeight * std::max(1.0, fit_.bending[i]);
     }
   }
 
-  /// Draws spans that are not free towards their targets and eases those that are too tight.
-  /// False when there are none.
-  bool mend_spans(const CubicBSpline& curve) {
+  Mending mend_spans(const CubicBSpline& curve, double step) {
     bool any = false;
-    const std::size_t spans = fit_.control.size() - 1;
-    std::vector<double> factor(fit_.control.size(), 1.0);
-    for (std::size_t span = 0; span < spans; ++span) {
-      const Verdict verdict = judge(curve, span);
+    bool hope = false;
+    std::vector<double> change(levels_.size(), 0.0);
+    for (std::size_t span = 0; span + 1 < levels_.size(); ++span) {
+      const Verdict verdict = judge_again(curve, span);
       if (verdict == Verdict::kGood) continue;
       if (!any) trouble_ = curve.position(static_cast<double>(span) + 0.5);
       any = true;
-      const std::size_t first = span > 0 ? span - 1 : 0;
-      for (std::size_t i = first; i <= std::min(span + 2, spans); ++i) {
-        factor[i] =
-            verdict == Verdict::kNotFree ? 5.0 : std::max(0.5, factor[i] > 1.0 ? factor[i] : 0.5);
+      const bool less = verdict == Verdict::kTooTight;
+      const double level = std::max(levels_[span], levels_[span + 1]);
+      hope |= less ? level > 0.0 : level < kMostLevels;
+      for (std::size_t i = span; i <= span + 1; ++i) {
+        if (less && change[i] <= 0.0) change[i] = -0.5 * step;
+        if (!less) change[i] = step;
       }
     }
-    for (std::size_t i = 0; i < factor.size(); ++i) {
-      if (!sites_.pinned[i]) fit_.weights[i] = std::min(fit_.weights[i] * factor[i], kPinWeight);
+    judged_ = curve.control_points();
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+      levels_[i] = std::clamp(levels_[i] + change[i], 0.0, kMostLevels);
     }
-    return any;
+    if (!any) return Mending::kNothingToDo;
+    return hope ? Mending::kTried : Mending::kHopeless;
   }
 
-  enum class Verdict { kGood, kNotFree, kTooTight };
+  /// Far from what is being mended nothing moves: good spans stay good.
+  Verdict judge_again(const CubicBSpline& curve, std::size_t span) {
+    const auto& c = curve.control_points();
+    if (judged_.size() != c.size()) {
+      judged_ = c;
+      is_good_.assign(c.size(), 0);
+    }
+    double moved = 0.0;
+    for (std::size_t i = span; i < span + 4; ++i) {
+      moved = std::max(moved, maps::distance(c[i], judged_[i]));
+    }
+    if (is_good_[span] && moved < kUnmovedM) return Verdict::kGood;
+    const Verdict verdict = judge(curve, span);
+    is_good_[span] = verdict == Verdict::kGood ? 1 : 0;
+    return verdict;
+  }
+
   Verdict judge(const CubicBSpline& curve, std::size_t span) const {
     const auto& c = fit_.control;
     const double length = maps::distance(c[span], c[span + 1]);
@@ -188,8 +228,12 @@ class CurveFit {
 
   const FreeSpace& space_;
   const SplineConfig& config_;
+  double spacing_;
   Sites sites_;
   PenalizedFit fit_;
+  std::vector<double> levels_;    // halvings of the smoothing length, per control point
+  std::vector<TPoint2D> judged_;  // control points
+  std::vector<char> is_good_;     // per span
   TPoint2D trouble_;
 };
 
