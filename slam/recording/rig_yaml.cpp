@@ -41,6 +41,7 @@ class YamlFile {
 
   std::vector<double> numbers(const std::string& key, std::size_t least, std::size_t most) const {
     YAML::Node node = root_[key];
+    if (!node.IsDefined()) throw maps::InputError(name_ + ": the key " + key + " is missing");
     if (node.IsMap()) node = node["data"];
     const std::string what = least == most ? "a list of " + std::to_string(least) + " numbers"
                                            : "a list of up to " + std::to_string(most) + " numbers";
