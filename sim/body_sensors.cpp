@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "sim/drive_train.h"
-
 namespace rovigo::sim {
 namespace {
 
@@ -65,7 +63,7 @@ mrpt::obs::CObservationOdometry::Ptr WheelSensor::sample(double interval_s) {
   left_ticks_ = left_ticks;
   right_ticks_ = right_ticks;
   const double forward = 0.5 * (left_m + right_m);
-  const double turn = (right_m - left_m) / effective_track_m(robot_);
+  const double turn = (right_m - left_m) / robot_.track_width_m;
   const double middle = odom_from_base_.phi + 0.5 * turn;
   odom_from_base_ = {odom_from_base_.x + forward * std::cos(middle),
                      odom_from_base_.y + forward * std::sin(middle),

@@ -33,8 +33,8 @@ class ImuSensor {
   Eigen::Vector3d previous_velocity_ = Eigen::Vector3d::Zero();
 };
 
-/// Counts ticks on both sides and integrates them with the nominal radius and the calibrated
-/// track, as the rover's firmware does. The true radius and track differ by the scale errors.
+/// Counts ticks on both sides and integrates them with the nominal radius and track,
+/// as the rover's firmware does. The true radius and track differ by the scale errors.
 class WheelSensor {
  public:
   WheelSensor(const WheelNoise& noise, const maps::RobotModel& robot, std::uint64_t seed);

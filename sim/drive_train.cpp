@@ -7,6 +7,10 @@
 namespace rovigo::sim {
 namespace {
 
+// Turning scrubs the tyres and holds the wheels back by a few percent; the loop's integral action
+// takes that out.
+constexpr double kTrimRate_1_s = 10.0;
+constexpr double kMaxTrim_m_s = 0.05;
 constexpr double kMovingRad_s = 0.05;     // a wheel slower than this is at rest
 constexpr double kKeepMovingShare = 0.4;  // of the dead zone: kinetic friction is the smaller one
 
@@ -31,25 +35,31 @@ DriveTrain::Output DriveTrain::step(double time_s, double dt_s, const TTwist2D& 
   Output out;
   out.left_grip = slipping && slip_on_left_ ? slip_grip_ : 1.0;
   out.right_grip = slipping && !slip_on_left_ ? slip_grip_ : 1.0;
-  const double half_turn = 0.5 * twist.omega * effective_track_m(robot_);
-  out.left = drive_side(twist.vx - half_turn, left_speed_rad_s, out.left_grip, dt_s, left_lagged_);
+  const double half_turn = 0.5 * twist.omega * robot_.track_width_m;
+  out.left = drive_side(twist.vx - half_turn, left_speed_rad_s, out.left_grip, dt_s, left_loop_);
   out.right =
-      drive_side(twist.vx + half_turn, right_speed_rad_s, out.right_grip, dt_s, right_lagged_);
+      drive_side(twist.vx + half_turn, right_speed_rad_s, out.right_grip, dt_s, right_loop_);
   return out;
 }
 
 SideDrive DriveTrain::drive_side(double target_m_s, double measured_rad_s, double grip, double dt_s,
-                                 double& lagged_m_s) const {
+                                 SpeedLoop& loop) const {
   const double limit = motor_.no_load_speed_m_s;
   double target = std::clamp(target_m_s, -limit, limit);
   const bool moving = std::abs(measured_rad_s) > kMovingRad_s;
   const double threshold = motor_.dead_zone_m_s * (moving ? kKeepMovingShare : 1.0);
   if (std::abs(target) < threshold) target = 0.0;
-  lagged_m_s += (target - lagged_m_s) * std::min(1.0, dt_s / std::max(motor_.lag_s, dt_s));
+  loop.wanted_m_s +=
+      (target - loop.wanted_m_s) * std::min(1.0, dt_s / std::max(motor_.lag_s, dt_s));
+  const double measured_m_s = measured_rad_s * robot_.wheel_radius_m;
+  const double error = grip * loop.wanted_m_s - measured_m_s;
+  loop.trim_m_s = target == 0.0 ? 0.0
+                                : std::clamp(loop.trim_m_s + kTrimRate_1_s * error * dt_s,
+                                             -kMaxTrim_m_s, kMaxTrim_m_s);
   SideDrive drive;
-  drive.speed_rad_s = grip * lagged_m_s / robot_.wheel_radius_m;
+  drive.speed_rad_s = (grip * loop.wanted_m_s + loop.trim_m_s) / robot_.wheel_radius_m;
   // A DC motor's torque falls linearly from stall to the no-load speed; braking it has all of it.
-  const double rim_m_s = std::abs(measured_rad_s) * robot_.wheel_radius_m;
+  const double rim_m_s = std::abs(measured_m_s);
   const bool accelerating = std::abs(drive.speed_rad_s) > std::abs(measured_rad_s);
   const double share = accelerating ? std::clamp(1.0 - rim_m_s / limit, 0.0, 1.0) : 1.0;
   drive.torque_limit_nm = motor_.stall_torque_nm * share;

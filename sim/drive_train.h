@@ -9,16 +9,6 @@
 
 namespace rovigo::sim {
 
-/// Four wheels scrub when the rover turns, so it turns less than its wheels say. The distance
-/// between two ideal wheels that would turn as it does is the track times this factor, measured on
-/// the nominal floor (sim_rover_test checks it). Both the mixer and the odometry use it, as a
-/// calibrated real rover does.
-inline constexpr double kSkidTrackFactor = 1.030;
-
-inline double effective_track_m(const maps::RobotModel& robot) {
-  return robot.track_width_m * kSkidTrackFactor;
-}
-
 class DriveTrain {
  public:
   DriveTrain(const MotorModel& motor, const WheelNoise& wheels, const maps::RobotModel& robot,
@@ -36,16 +26,21 @@ class DriveTrain {
               double right_speed_rad_s);
 
  private:
+  /// The speed loop of one side's wheels.
+  struct SpeedLoop {
+    double wanted_m_s = 0.0;  ///< the target behind its first-order lag
+    double trim_m_s = 0.0;    ///< integral action
+  };
   SideDrive drive_side(double target_m_s, double measured_rad_s, double grip, double dt_s,
-                       double& lagged_m_s) const;
+                       SpeedLoop& loop) const;
   void update_slip(double time_s);
 
   MotorModel motor_;
   WheelNoise wheels_;
   maps::RobotModel robot_;
   RandomStream slip_random_;
-  double left_lagged_ = 0.0;
-  double right_lagged_ = 0.0;
+  SpeedLoop left_loop_;
+  SpeedLoop right_loop_;
   double next_slip_s_ = 0.0;
   double slip_end_s_ = 0.0;
   double slip_grip_ = 1.0;

@@ -120,6 +120,7 @@ struct RoverBody::Impl {
     const bool is_floor = is_plane || top <= kBodyClearanceM;
     add_body(0.0, std::move(shape), to_bullet(frame), btVector3(0, 0, 0),
              is_floor ? kFloor : kObstacle, is_floor ? kWheel : kBody);
+    names_[bodies_.back().get()] = solid.name;
   }
 
   btRigidBody* add_body(double mass, std::unique_ptr<btCollisionShape> shape,
@@ -198,20 +199,27 @@ struct RoverBody::Impl {
     }
   }
 
-  void count_contacts() {
-    ++step_;
+  /// Calls `visit` with every obstacle that the body touches.
+  template <class Visit>
+  void for_each_touched(const Visit& visit) {
     for (int i = 0; i < dispatcher_.getNumManifolds(); ++i) {
       const btPersistentManifold* manifold = dispatcher_.getManifoldByIndexInternal(i);
       const btCollisionObject* other = nullptr;
       if (manifold->getBody0() == chassis_) other = manifold->getBody1();
       if (manifold->getBody1() == chassis_) other = manifold->getBody0();
-      if (!other || !is_touching(*manifold)) continue;
+      if (other && is_touching(*manifold)) visit(other);
+    }
+  }
+
+  void count_contacts() {
+    ++step_;
+    for_each_touched([this](const btCollisionObject* other) {
       const auto last = last_touch_.find(other);
       if (last == last_touch_.end() || step_ - last->second > kRestStepsBetweenContacts) {
         ++contact_events_;
       }
       last_touch_[other] = step_;
-    }
+    });
   }
 
   static bool is_touching(const btPersistentManifold& manifold) {
@@ -235,6 +243,7 @@ struct RoverBody::Impl {
   long step_ = 0;
   int contact_events_ = 0;
   std::map<const btCollisionObject*, long> last_touch_;
+  std::map<const btCollisionObject*, std::string> names_;
 };
 
 RoverBody::RoverBody(const WorldModel& world, const maps::RobotModel& robot,
@@ -274,6 +283,12 @@ double RoverBody::right_speed_rad_s() const {
   return 0.5 * (impl_->wheel_speed(1) + impl_->wheel_speed(3));
 }
 int RoverBody::contact_events() const { return impl_->contact_events_; }
+
+std::string RoverBody::touched() const {
+  std::string name;
+  impl_->for_each_touched([&](const btCollisionObject* other) { name = impl_->names_[other]; });
+  return name;
+}
 
 void RoverBody::place(const TPose2D& world_from_base) {
   const auto put = [](btRigidBody* body, const btTransform& frame) {

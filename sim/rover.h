@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <memory>
+#include <string>
 
 #include "maps/geometry.h"
 #include "maps/robot_model.h"
@@ -37,6 +38,8 @@ class RoverBody {
   double right_speed_rad_s() const;
   /// Times the rover began to touch anything but the floor.
   int contact_events() const;
+  /// What the body touches now; empty: nothing but the floor under the wheels.
+  std::string touched() const;
   /// Puts the rover down elsewhere, at rest.
   void place(const TPose2D& world_from_base);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <deque>
 
+#include "maps/error.h"
 #include "sim/body_sensors.h"
 #include "sim/depth_camera.h"
 #include "sim/drive_train.h"
@@ -94,11 +95,20 @@ struct Simulator::Impl {
                                              derive_seed(options.seed, kCameraStream));
     }
     const SideDrive hold{0.0, options.scenario.motor.stall_torque_nm};
-    for (int i = 0; i < kSettleSteps; ++i) body.step(kStepS, hold, hold);
-    settled_contacts = body.contact_events();
+    for (int i = 0; i < kSettleSteps; ++i) {
+      body.step(kStepS, hold, hold);
+      if (const std::string thing = body.touched(); !thing.empty()) refuse_start(thing);
+    }
     imu.reset_motion(body.state());
     update_truth();
     sense();
+  }
+
+  [[noreturn]] void refuse_start(const std::string& thing) const {
+    const TPose2D& p = options.world_from_base;
+    throw maps::InputError("the rover cannot be put down at (" + std::to_string(p.x) + ", " +
+                           std::to_string(p.y) + ") in world '" + world.name() +
+                           "': it would touch '" + thing + "'; choose a start that is clear of it");
   }
 
   double time_s() const { return kFirstTimeS + static_cast<double>(step_index) * kStepS; }
@@ -134,7 +144,7 @@ struct Simulator::Impl {
     const Eigen::Matrix3d base_from_world = state.world_from_base.linear().transpose();
     const Eigen::Vector3d v = base_from_world * state.velocity;
     truth.twist = TTwist2D(v.x(), v.y(), (base_from_world * state.angular_velocity).z());
-    truth.contact_events = body.contact_events() - settled_contacts;
+    truth.contact_events = body.contact_events();
   }
 
   void sense() {
@@ -189,7 +199,6 @@ struct Simulator::Impl {
   Truth truth;
   std::deque<Pending> pending;
   long step_index = 0;
-  int settled_contacts = 0;
   std::size_t next_kidnap = 0;
 };
 

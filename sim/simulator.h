@@ -41,6 +41,7 @@ class Simulator {
  public:
   static constexpr double kStepS = 1.0 / 240.0;
 
+  /// Throws InputError when the rover would stand in an obstacle.
   Simulator(const World& world, const SimulatorOptions& options);
   ~Simulator();
 
