@@ -92,6 +92,23 @@ int LandmarkMap::add_keyframe(Keyframe added) {
   return id;
 }
 
+void LandmarkMap::add_sighting(int landmark_id, int keyframe_id, int feature) {
+  Landmark& l = landmark(landmark_id);
+  const bool known = std::any_of(l.sightings.begin(), l.sightings.end(),
+                                 [&](const auto& s) { return s.keyframe == keyframe_id; });
+  if (!l.alive || known) return;
+  l.sightings.push_back({keyframe_id, feature});
+  keyframe(keyframe_id).landmark_of[static_cast<std::size_t>(feature)] = landmark_id;
+}
+
+void LandmarkMap::remove_sighting(int landmark_id, int index) {
+  Landmark& l = landmark(landmark_id);
+  const Sighting s = l.sightings[static_cast<std::size_t>(index)];
+  keyframe(s.keyframe).landmark_of[static_cast<std::size_t>(s.feature)] = -1;
+  l.sightings.erase(l.sightings.begin() + index);
+  l.alive = !l.sightings.empty();
+}
+
 void LandmarkMap::merge_landmarks(int from, int into) {
   if (from == into) return;
   Landmark& a = landmark(from);

@@ -70,6 +70,11 @@ class LandmarkMap {
     landmarks_ = std::move(landmarks);
   }
 
+  /// Notes that `keyframe` sees `landmark` at `feature`, unless it sees it elsewhere already.
+  void add_sighting(int landmark, int keyframe, int feature);
+  /// Takes a sighting out; a landmark without sightings is gone.
+  void remove_sighting(int landmark, int index);
+
   /// Everything `from` was seen as becomes a sighting of `into`; `from` is gone.
   void merge_landmarks(int from, int into);
 

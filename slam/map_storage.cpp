@@ -1,6 +1,7 @@
 #include "slam/map_storage.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -61,6 +62,28 @@ std::vector<maps::StoredKeyframe> store_keyframes(const LandmarkMap& map) {
     s.depth_png = k.depth_png;
     s.features = encode_features(features);
     out.push_back(std::move(s));
+  }
+  return out;
+}
+
+std::vector<maps::StoredEdge> store_edges(const std::vector<PoseGraphEdge>& edges) {
+  // The chart's rotation vector (roll, pitch, yaw) becomes MRPT's yaw, pitch, roll: to first order
+  // the same three angles in the other order.
+  constexpr std::array<int, 6> kOrder = {0, 1, 2, 5, 4, 3};
+  std::vector<maps::StoredEdge> out;
+  for (const PoseGraphEdge& e : edges) {
+    maps::StoredEdge s;
+    s.from = e.from;
+    s.to = e.to;
+    s.kind = e.kind;
+    s.from_from_to = to_mrpt(e.from_from_to);
+    for (int i = 0; i < 6; ++i) {
+      for (int j = 0; j < 6; ++j) {
+        s.information(i, j) =
+            e.information(kOrder[static_cast<std::size_t>(i)], kOrder[static_cast<std::size_t>(j)]);
+      }
+    }
+    out.push_back(s);
   }
   return out;
 }

@@ -5,11 +5,15 @@
 
 #include "maps/map_file.h"
 #include "slam/landmark_map.h"
+#include "slam/pose_graph.h"
 
 namespace rovigo::slam {
 
 /// Keyframes with their living landmarks, as a map file holds them.
 std::vector<maps::StoredKeyframe> store_keyframes(const LandmarkMap& map);
+
+/// The graph's edges in the map file's order of coordinates.
+std::vector<maps::StoredEdge> store_edges(const std::vector<PoseGraphEdge>& edges);
 
 /// The map a saved file's keyframes describe. Throws InputError for features that cannot be read
 /// or a pose that is not finite.

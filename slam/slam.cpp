@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slam/bundle_adjustment.h"
 #include "slam/camera_frame.h"
 #include "slam/depth_scan.h"
 #include "slam/features.h"
@@ -14,6 +15,7 @@
 #include "slam/keyframe_codec.h"
 #include "slam/landmark_map.h"
 #include "slam/local_map.h"
+#include "slam/loop_closer.h"
 #include "slam/map_storage.h"
 #include "slam/motion_model.h"
 #include "slam/place_match.h"
@@ -26,8 +28,9 @@ namespace {
 
 constexpr double kDeadReckonedEveryS = 0.08;  // poses where frames are missing: above 10 Hz
 constexpr int kMinFirstFeatures = 50;         // with depth, to start a map on
-constexpr double kScanSpacing = 0.15;         // in units of the keyframe spacing
-constexpr double kBodyRadiusM = 0.20;         // half the rover's width: where it was is free
+constexpr int kFinalIterations = 8;
+constexpr double kScanSpacing = 0.15;  // in units of the keyframe spacing
+constexpr double kBodyRadiusM = 0.20;  // half the rover's width: where it was is free
 
 /// A scan held relative to a keyframe, so that the grid follows the optimised poses.
 struct AnchoredScan {
@@ -47,6 +50,7 @@ struct Slam::Impl {
                                           : from_mrpt(base_from_optical({}))),
         map(settings, camera, base_from_camera),
         motion(settings, r),
+        loops(settings, motion.planar()),
         scanner(camera, settings.grid, settings.depth) {}
 
   void begin(double time_s);
@@ -57,6 +61,8 @@ struct Slam::Impl {
   void remember_tracked(const TrackResult& result);
   void insert_keyframe(const CameraFrame& frame, FeatureSet features, const TrackResult& result,
                        const Se3& pose);
+  void look_for_loop(double time_s);
+  void adjust_everything();
   void scan_surroundings(const CameraFrame& frame, const Se3& pose);
   maps::OccupancyGrid render() const;
   void remember_pose(double time_s, const Se3& pose, bool is_camera_frame);
@@ -68,6 +74,8 @@ struct Slam::Impl {
   Se3 base_from_camera;
   LandmarkMap map;
   MotionModel motion;
+  LoopCloser loops;
+  std::vector<PoseGraphEdge> edges;
   TrajectoryHistory history;
   DepthScanner scanner;
   std::vector<AnchoredScan> scans;
@@ -171,6 +179,27 @@ void Slam::Impl::insert_keyframe(const CameraFrame& frame, FeatureSet features,
     if (l >= 0) tracked_landmarks.push_back(l);
   }
   map.cull(local.landmarks);
+  for (const PoseGraphEdge& e : tracked_edges(map, id, motion.planar())) edges.push_back(e);
+  look_for_loop(frame.time_s);
+}
+
+void Slam::Impl::look_for_loop(double time_s) {
+  const MotionPrediction now = motion.predict(time_s);
+  const int newest = static_cast<int>(map.keyframes().size()) - 1;
+  const auto loop = loops.detect(map, {now.sigma_position_m, now.sigma_heading_rad});
+  if (!loop || !config.loop.loop_closure) return;
+  const Se3 before = map.keyframe(newest).map_from_base;
+  if (!close_loop(map, edges, *loop)) return;
+  ++counters.loop_closures;
+  motion.shift(map.keyframe(newest).map_from_base * before.inverse());
+}
+
+/// The last word on all poses: everything seen, all at once.
+void Slam::Impl::adjust_everything() {
+  constexpr int kPasses = 2;  // the second without the sightings the first found wanting
+  for (int pass = 0; pass < kPasses; ++pass) {
+    adjust_bundle(map, {}, {}, {.iterations = kFinalIterations, .on_floor = motion.planar()});
+  }
 }
 
 PoseEstimate Slam::Impl::estimate(double time_s, const Se3& pose, bool tracked) {
@@ -208,6 +237,7 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
   const bool first = map.keyframes().empty() && with_depth >= kMinFirstFeatures;
   if (first || (tracked && wants_keyframe(map, local, result, features, pose))) {
     insert_keyframe(frame, std::move(features), result, pose);
+    pose = map.keyframe(local.reference_keyframe).map_from_base;  // a loop may have moved it
   }
   remember_pose(frame.time_s, pose, true);
   scan_surroundings(frame, pose);
@@ -238,11 +268,13 @@ std::optional<PoseEstimate> Slam::process(const mrpt::obs::CObservation& observa
 
 maps::SavedMap Slam::finish() {
   Impl& s = *impl_;
+  s.adjust_everything();
   maps::SavedMap out;
   out.metadata.software_version = ROVIGO_VERSION;
   out.metadata.camera = s.rig.camera;
   out.metadata.base_from_camera = to_mrpt(s.base_from_camera);
   out.keyframes = store_keyframes(s.map);
+  out.edges = store_edges(s.edges);
   out.trajectory = s.history.poses(s.map);
   out.grid = s.render();
   return out;

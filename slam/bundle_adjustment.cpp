@@ -1,0 +1,272 @@
+#include "slam/bundle_adjustment.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "slam/ceres_pose.h"
+
+namespace rovigo::slam {
+
+namespace {
+
+constexpr double kKernel = 2.5;       // sigmas
+constexpr double kRejectChi2 = 16.0;  // of three degrees of freedom: 0.1% of honest sightings
+constexpr double kPointFloorM = 0.002;
+
+using Step = std::array<double, 6>;
+
+/// One sighting: pixel and depth error of a landmark in a keyframe, with exact derivatives.
+class SightingError final : public ceres::SizedCostFunction<3, 6, 3> {
+ public:
+  SightingError(const Se3& origin, const Feature& feature, const MeasurementNoise& noise,
+                const CameraModel& camera, const Se3& camera_from_base)
+      : origin_(origin),
+        pixel_(feature.pixel.cast<double>()),
+        depth_m_(feature.depth_m),
+        noise_(noise),
+        camera_(camera),
+        camera_from_base_(camera_from_base) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    const Eigen::Map<const Vector6d> step(parameters[0]);
+    const Eigen::Map<const Eigen::Vector3d> point(parameters[1]);
+    const Se3 pose = retract(origin_, step);
+    const Eigen::Vector3d in_base = pose.rotation.transpose() * (point - pose.translation);
+    const Eigen::Vector3d p = camera_from_base_ * in_base;
+    const double z = std::max(0.05, p.z());  // behind the camera: a large but finite error
+    const double iz = 1.0 / z;
+    const Eigen::Vector2d pixel = camera_.project({p.x(), p.y(), z});
+    const bool has_depth = depth_m_ > 0;
+    residuals[0] = (pixel.x() - pixel_.x()) / noise_.pixel_sigma;
+    residuals[1] = (pixel.y() - pixel_.y()) / noise_.pixel_sigma;
+    residuals[2] = has_depth ? (p.z() - depth_m_) / noise_.depth_sigma_m : 0.0;
+    if (jacobians == nullptr) return true;
+
+    Eigen::Matrix3d by_point = Eigen::Matrix3d::Zero();
+    by_point(0, 0) = camera_.fx() * iz / noise_.pixel_sigma;
+    by_point(0, 2) = -camera_.fx() * p.x() * iz * iz / noise_.pixel_sigma;
+    by_point(1, 1) = camera_.fy() * iz / noise_.pixel_sigma;
+    by_point(1, 2) = -camera_.fy() * p.y() * iz * iz / noise_.pixel_sigma;
+    if (has_depth) by_point(2, 2) = 1.0 / noise_.depth_sigma_m;
+    const Eigen::Matrix3d by_base = by_point * camera_from_base_.rotation;
+    if (jacobians[0] != nullptr) {
+      Eigen::Map<Eigen::Matrix<double, 3, 6, Eigen::RowMajor>> j(jacobians[0]);
+      const Eigen::Matrix3d k = skew(step.tail<3>());
+      const Eigen::Matrix3d right = Eigen::Matrix3d::Identity() - 0.5 * k + k * k / 6.0;
+      j.leftCols<3>() = -by_base * pose.rotation.transpose() * origin_.rotation;
+      j.rightCols<3>() = by_base * skew(in_base) * right;
+    }
+    if (jacobians[1] != nullptr) {
+      Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> j(jacobians[1]);
+      j = by_base * pose.rotation.transpose();
+    }
+    return true;
+  }
+
+ private:
+  Se3 origin_;
+  Eigen::Vector2d pixel_;
+  double depth_m_;
+  MeasurementNoise noise_;
+  const CameraModel& camera_;
+  const Se3& camera_from_base_;
+};
+
+/// A rover's height, roll and pitch are near zero.
+struct FloorError {
+  template <class T>
+  bool operator()(const T* step, T* residual) const {
+    const PoseOf<T> pose(origin, step);
+    residual[0] = pose.translation(2) / T(height_sigma);
+    residual[1] = pose.rotation(2, 1) / T(tilt_sigma);
+    residual[2] = pose.rotation(2, 0) / T(tilt_sigma);
+    return true;
+  }
+  Se3 origin;
+  double height_sigma, tilt_sigma;
+};
+
+/// A soft link between two keyframes (wheels and gyro).
+struct LinkError {
+  template <class T>
+  bool operator()(const T* from_step, const T* to_step, T* residual) const {
+    const PoseOf<T> from(from_origin, from_step), to(to_origin, to_step);
+    const Eigen::Matrix<T, 3, 3> measured_back = measured.rotation.transpose().cast<T>();
+    const Eigen::Matrix<T, 3, 1> between =
+        from.rotation.transpose() * (to.translation - from.translation);
+    const Eigen::Matrix<T, 3, 3> turn = measured_back * from.rotation.transpose() * to.rotation;
+    Eigen::Matrix<T, 6, 1> error;
+    error.template head<3>() = measured_back * (between - measured.translation.cast<T>());
+    ceres::RotationMatrixToAngleAxis(turn.data(), error.data() + 3);
+    for (int i = 0; i < 6; ++i) residual[i] = error(i) * T(root_weight(i));
+    return true;
+  }
+  Se3 from_origin, to_origin, measured;
+  Vector6d root_weight;
+};
+
+class Bundle {
+ public:
+  Bundle(LandmarkMap& map, const std::vector<int>& keyframes, const BundleConfig& config)
+      : map_(map),
+        config_(config),
+        camera_from_base_(map.base_from_camera().inverse()),
+        steps_(map.keyframes().size(), Step{}),
+        is_free_(map.keyframes().size(), keyframes.empty() ? 1 : 0) {
+    for (const int k : keyframes) is_free_[static_cast<std::size_t>(k)] = 1;
+    if (!is_free_.empty()) is_free_[0] = 0;  // the map's frame hangs on it
+  }
+
+  int add_sightings() {
+    const auto noise_for = [&](const Feature& f) { return noise_of(f, map_.config()); };
+    int count = 0;
+    for (std::size_t id = 0; id < map_.landmarks().size(); ++id) {
+      Landmark& l = map_.landmark(static_cast<int>(id));
+      if (!l.alive || l.sightings.size() < config_.min_sightings) continue;
+      const bool concerned = std::any_of(l.sightings.begin(), l.sightings.end(), [&](auto& s) {
+        return is_free_[static_cast<std::size_t>(s.keyframe)] != 0;
+      });
+      if (!concerned) continue;
+      for (const Sighting& s : l.sightings) {
+        const Keyframe& k = map_.keyframe(s.keyframe);
+        const Feature& f = k.features[static_cast<std::size_t>(s.feature)];
+        problem_.AddResidualBlock(
+            new SightingError(k.map_from_base, f, noise_for(f), map_.camera(), camera_from_base_),
+            new ceres::HuberLoss(kKernel), step(s.keyframe), l.position_map.data());
+        ++count;
+      }
+      ordering_->AddElementToGroup(l.position_map.data(), 0);
+      used_.push_back(static_cast<int>(id));
+    }
+    return count;
+  }
+
+  void add_floor() {
+    const TrackingConfig& t = map_.config().tracking;
+    for (const Keyframe& k : map_.keyframes()) {
+      if (!problem_.HasParameterBlock(step(k.id))) continue;
+      problem_.AddResidualBlock(
+          new ceres::AutoDiffCostFunction<FloorError, 3, 6>(
+              new FloorError{k.map_from_base, t.plane_height_sigma_m, t.plane_tilt_sigma_rad}),
+          nullptr, step(k.id));
+    }
+  }
+
+  void add_links(const std::vector<PoseGraphEdge>& edges) {
+    for (const PoseGraphEdge& e : edges) {
+      if (!is_free_[static_cast<std::size_t>(e.from)] &&
+          !is_free_[static_cast<std::size_t>(e.to)]) {
+        continue;
+      }
+      problem_.AddResidualBlock(
+          new ceres::AutoDiffCostFunction<LinkError, 6, 6, 6>(
+              new LinkError{map_.keyframe(e.from).map_from_base, map_.keyframe(e.to).map_from_base,
+                            e.from_from_to, e.information.diagonal().cwiseSqrt()}),
+          new ceres::CauchyLoss(kKernel), step(e.from), step(e.to));
+    }
+  }
+
+  ceres::Solver::Summary solve() {
+    for (const Keyframe& k : map_.keyframes()) {
+      if (!problem_.HasParameterBlock(step(k.id))) continue;
+      ordering_->AddElementToGroup(step(k.id), 1);
+      if (!is_free_[static_cast<std::size_t>(k.id)]) {
+        problem_.SetParameterBlockConstant(step(k.id));
+      }
+    }
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::SPARSE_SCHUR;
+    options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+    options.linear_solver_ordering = ordering_;
+    options.num_threads = 1;
+    options.max_num_iterations = config_.iterations;
+    options.function_tolerance = 1e-4;
+    options.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem_, &summary);
+    return summary;
+  }
+
+  void apply() {
+    for (const Keyframe& k : map_.keyframes()) {
+      const Eigen::Map<const Vector6d> moved(step(k.id));
+      if (moved.isZero(0.0)) continue;
+      map_.keyframe(k.id).map_from_base = normalized(retract(k.map_from_base, moved));
+    }
+  }
+
+  /// Landmarks keep only sightings that fit, and learn how well they are known.
+  int settle_landmarks() {
+    int rejected = 0;
+    for (const int id : used_) {
+      Landmark& l = map_.landmark(id);
+      Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+      for (std::size_t i = l.sightings.size(); i-- > 0;) {
+        const Sighting s = l.sightings[i];
+        const Keyframe& k = map_.keyframe(s.keyframe);
+        const Feature& f = k.features[static_cast<std::size_t>(s.feature)];
+        const SightingError error(k.map_from_base, f, noise_of(f, map_.config()), map_.camera(),
+                                  camera_from_base_);
+        const Step zero{};
+        const double* parameters[] = {zero.data(), l.position_map.data()};
+        Eigen::Vector3d residual;
+        Eigen::Matrix<double, 3, 3, Eigen::RowMajor> by_point;
+        double* jacobians[] = {nullptr, by_point.data()};
+        error.Evaluate(parameters, residual.data(), jacobians);
+        if (residual.squaredNorm() > kRejectChi2) {
+          map_.remove_sighting(id, static_cast<int>(i));
+          ++rejected;
+        } else {
+          information += by_point.transpose() * by_point;
+        }
+      }
+      if (!l.alive) continue;
+      information.diagonal().array() += 1.0;  // invertible, whatever was seen
+      l.covariance = information.inverse();
+      l.covariance.diagonal().array() += kPointFloorM * kPointFloorM;
+    }
+    return rejected;
+  }
+
+ private:
+  double* step(int keyframe) { return steps_[static_cast<std::size_t>(keyframe)].data(); }
+
+  LandmarkMap& map_;
+  BundleConfig config_;
+  Se3 camera_from_base_;
+  std::vector<Step> steps_;
+  std::vector<std::uint8_t> is_free_;
+  std::vector<int> used_;
+  ceres::Problem problem_;
+  std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ =
+      std::make_shared<ceres::ParameterBlockOrdering>();
+};
+
+}  // namespace
+
+BundleResult adjust_bundle(LandmarkMap& map, const std::vector<int>& keyframes,
+                           const std::vector<PoseGraphEdge>& edges, const BundleConfig& config) {
+  BundleResult result;
+  if (map.keyframes().size() < 2) return result;
+  Bundle bundle(map, keyframes, config);
+  result.sightings = bundle.add_sightings();
+  if (result.sightings == 0) return result;
+  bundle.add_links(edges);
+  if (config.on_floor) bundle.add_floor();
+  const ceres::Solver::Summary summary = bundle.solve();
+  result.initial_cost = summary.initial_cost;
+  result.final_cost = summary.final_cost;
+  result.converged = summary.IsSolutionUsable();
+  if (!result.converged) return result;
+  bundle.apply();
+  result.rejected = bundle.settle_landmarks();
+  return result;
+}
+
+}  // namespace rovigo::slam

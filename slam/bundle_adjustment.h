@@ -1,0 +1,31 @@
+#pragma once
+// Keyframe poses and landmarks together (Triggs et al. 2000): every sighting pulls on both.
+
+#include <vector>
+
+#include "slam/landmark_map.h"
+#include "slam/pose_graph.h"
+
+namespace rovigo::slam {
+
+struct BundleConfig {
+  int iterations = 10;
+  bool on_floor = false;          ///< keyframes keep to the plane within tracking's plane sigmas
+  std::size_t min_sightings = 2;  ///< landmarks seen less often constrain nothing
+};
+
+struct BundleResult {
+  int sightings = 0;
+  int rejected = 0;  ///< sightings that did not fit and were taken out of the map
+  double initial_cost = 0.0;
+  double final_cost = 0.0;
+  bool converged = false;
+};
+
+/// Adjusts `keyframes` (those outside the list are held) and the landmarks they see; `edges` are
+/// kept as soft links. Sightings that do not fit in the end are removed. With an empty list all
+/// keyframes but the first are adjusted.
+BundleResult adjust_bundle(LandmarkMap& map, const std::vector<int>& keyframes,
+                           const std::vector<PoseGraphEdge>& edges, const BundleConfig& config);
+
+}  // namespace rovigo::slam
