@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "maps/error.h"
 #include "sim/renderer.h"
 #include "sim/simulator.h"
 #include "sim/world_model.h"
@@ -132,7 +133,11 @@ void flood_free(maps::OccupancyGrid& grid, const TPoint2D& start) {
 maps::OccupancyGrid true_grid(const World& world, double resolution_m, double min_height_m,
                               double max_height_m) {
   constexpr double kMarginCells = 2.0;
-  const Bounds bounds = bounds_of(world.model());
+  constexpr std::size_t kMaxCells = 64U << 20U;
+  Bounds bounds = bounds_of(world.model());
+  const TPoint2D start = maps::position_of(world.start());
+  bounds.min = {std::min(bounds.min.x, start.x), std::min(bounds.min.y, start.y)};
+  bounds.max = {std::max(bounds.max.x, start.x), std::max(bounds.max.y, start.y)};
   maps::GridGeometry geometry;
   geometry.resolution_m = resolution_m;
   // Cell borders on multiples of the resolution, so that grids of one world line up.
@@ -141,11 +146,16 @@ maps::OccupancyGrid true_grid(const World& world, double resolution_m, double mi
   geometry.origin = {down(bounds.min.x) * resolution_m, down(bounds.min.y) * resolution_m};
   geometry.width = static_cast<int>(up(bounds.max.x) - down(bounds.min.x));
   geometry.height = static_cast<int>(up(bounds.max.y) - down(bounds.min.y));
+  if (geometry.size() > kMaxCells) {
+    throw maps::InputError("the true grid of world '" + world.name() + "' would have " +
+                           std::to_string(geometry.size()) + " cells; the limit is " +
+                           std::to_string(kMaxCells) + "; choose a coarser resolution");
+  }
   maps::OccupancyGrid grid(geometry);
   for (const auto& solid : world.model().solids) {
     if (solid.visible) mark(grid, section_between(solid, min_height_m, max_height_m));
   }
-  flood_free(grid, maps::position_of(world.start()));
+  flood_free(grid, start);
   return grid;
 }
 
