@@ -12,7 +12,7 @@ namespace rovigo::planning {
 
 struct CheckOptions {
   double robot_radius_m = 0.30;
-  MotionLimits limits;
+  MotionLimits limits = {};
   bool escape_allowed = false;      ///< may begin nearer to an obstacle than the radius
   bool unknown_is_blocked = true;   ///< map mode 0
   double clearance_looked_m = 0.6;  ///< clearances are measured up to this
