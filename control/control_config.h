@@ -15,7 +15,7 @@ struct ControlConfig {
   double anti_windup_time_s = 0.5;
 
   // From cross-track error to heading: the path is approached at most at this angle.
-  double cross_track_rate_1_s = 1.4;
+  double cross_track_rate_1_s = 1.8;
   double cross_track_max_gain_1_m = 5.0;
   double max_approach_angle_rad = 0.7;
   double turn_first_angle_rad = 0.5235987755982988;  // 30 deg

@@ -9,7 +9,9 @@ namespace {
 using maps::wrap_angle;
 
 constexpr double kEasyHeadingErrorRad = 0.15;  ///< up to here the rover drives at full speed
-constexpr double kFadeBeforeStopM = 0.10;      ///< cross-track correction fades out towards a stop
+constexpr double kEasyOffPathM = 0.03, kFarOffPathM = 0.12;  ///< in between it slows down ...
+constexpr double kOffPathShare = 0.4;                        ///< ... to this share of the speed
+constexpr double kFadeBeforeStopM = 0.10;  ///< cross-track correction fades out towards a stop
 constexpr double kStandingSpeedMS = 0.02;
 constexpr double kStandingTurnRateRadS = 0.05;
 constexpr double kTurnShare = 0.9;        ///< of the turn limits used, so that feedback has room
@@ -149,7 +151,9 @@ FollowOutput PathFollower::drive(const Leg& leg, const FollowInput& in) {
       legs_.at_arc(arc_m_ + in.twist.vx * config_.drive_lag_s, leg).curvature_1_m;
   const double stretch = std::clamp(1.0 - curvature * place.cross_track_m, 0.5, 2.0);
   const double path_turn = out.wanted.vx * curvature * std::cos(out.heading_error_rad) / stretch;
-  out.wanted.omega = steer(error, path_turn + to_path.heading_rate, 0.05 + 0.5 * in.twist.vx, in);
+  const double feed_forward = path_turn + to_path.heading_rate;
+  out.wanted.vx *= steering_room(feed_forward + config_.heading_kp_1_s * error, in);
+  out.wanted.omega = steer(error, feed_forward, 0.05 + 0.5 * in.twist.vx, in);
   return out;
 }
 
@@ -172,8 +176,9 @@ double PathFollower::wanted_speed(const Leg& leg, const PathPlace& place, double
   const double planned = std::max(0.0, planning::sample(legs_.trajectory(), lead).speed_m_s);
   const double remaining = legs_.end_arc_m(leg) - place.arc_m;
   const double lag = legs_.arc_at_time(reference_time_s_) - place.arc_m;
-  const double heading_factor =
-      falling(heading_error, kEasyHeadingErrorRad, config_.turn_first_angle_rad);
+  const double off_path = falling(std::abs(place.cross_track_m), kEasyOffPathM, kFarOffPathM);
+  const double care = falling(heading_error, kEasyHeadingErrorRad, config_.turn_first_angle_rad) *
+                      (kOffPathShare + (1.0 - kOffPathShare) * off_path);
 
   // Where scrubbing eats turn rate, a curve planned at the turn limit must be driven slower.
   const double bend = std::abs(place.curvature_1_m);
@@ -182,7 +187,7 @@ double PathFollower::wanted_speed(const Leg& leg, const PathPlace& place, double
                                : limits_.max_speed_m_s;
   const double cap = std::min({in.speed_cap_m_s, curve_cap, limits_.max_speed_m_s});
 
-  double pace = falling(lag, config_.lag_slowdown_m, config_.lag_stop_m) * heading_factor;
+  double pace = falling(lag, config_.lag_slowdown_m, config_.lag_stop_m) * care;
   if (planned > 0.0) pace = std::min(pace, cap / planned);
   advance_reference(leg, pace, limits_.max_acceleration_m_s2 / std::max(planned, kStandingSpeedMS),
                     in.dt_s);
@@ -190,13 +195,21 @@ double PathFollower::wanted_speed(const Leg& leg, const PathPlace& place, double
   const double feed_forward = pace_ * planned;
   const double catch_up = kCatchUpShare * planned + kCatchUpSpeedMS;
   const double braking = braking_speed(remaining, limits_.max_acceleration_m_s2);
-  return heading_factor *
-         speed_pi_.update({.error = lag,
-                           .feed_forward = feed_forward,
-                           .dt_s = in.dt_s,
-                           .min = 0.0,
-                           .max = std::min({cap, feed_forward + catch_up, braking}),
-                           .integral_limit = kIntegralShare * feed_forward});
+  return care * speed_pi_.update({.error = lag,
+                                  .feed_forward = feed_forward,
+                                  .dt_s = in.dt_s,
+                                  .min = 0.0,
+                                  .max = std::min({cap, feed_forward + catch_up, braking}),
+                                  .integral_limit = kIntegralShare * feed_forward});
+}
+
+/// 1 while the turn asked for can be had; below that, the share of speed at which the path's
+/// curvature leaves enough of the turn limit to come back.
+double PathFollower::steering_room(double turn_rate, const FollowInput& in) const {
+  constexpr double kLeast = 0.3;
+  const double reach = limits_.max_yaw_rate_rad_s * in.turn_gain;
+  const double asked = std::abs(turn_rate);
+  return asked > reach ? std::max(kLeast, reach / asked) : 1.0;
 }
 
 double PathFollower::steer(double error, double feed_forward, double integral_limit,

@@ -61,6 +61,7 @@ class PathFollower {
                     double speed) const;
   double wanted_speed(const Leg& leg, const PathPlace& place, double heading_error,
                       const FollowInput& in);
+  double steering_room(double turn_rate, const FollowInput& in) const;
   double steer(double error, double feed_forward, double integral_limit, const FollowInput& in);
   double turn_in_place(double error, double feed_forward, const FollowInput& in);
 

@@ -263,8 +263,8 @@ void draw_layers(Canvas& canvas, const MapPictureLayers& layers) {
     draw_disc(image, at, 2, kKeyframeColor);
   }
   draw_path(canvas, layers.planned_path, kPlannedColor, 6);
+  draw_path(canvas, layers.estimated_path, kEstimatedColor, 2);  // seen where it leaves the truth
   draw_path(canvas, layers.driven_path, kDrivenColor, 2);
-  draw_path(canvas, layers.estimated_path, kEstimatedColor, 1);
   for (const TPoint2D& via : layers.via_points) {
     if (std::isfinite(via.x) && std::isfinite(via.y)) {
       draw_diamond(image, canvas.pixel(via), 8, kPlannedColor);
@@ -300,7 +300,7 @@ std::vector<LegendEntry> legend_of(const MapPictureLayers& layers) {
   add(!layers.via_points.empty(), {"via point", Mark::kDiamond, kPlannedColor});
   add(!layers.planned_path.empty(), {"planned path", Mark::kLine, kPlannedColor, 6});
   add(!layers.driven_path.empty(), {"driven path", Mark::kLine, kDrivenColor, 2});
-  add(!layers.estimated_path.empty(), {"estimated path", Mark::kLine, kEstimatedColor, 1});
+  add(!layers.estimated_path.empty(), {"estimated path", Mark::kLine, kEstimatedColor, 2});
   add(!layers.keyframes.empty(), {"keyframe", Mark::kTick, kKeyframeColor});
   add(true, {"obstacle", Mark::kPatch, kOccupiedColor});
   add(layers.costmap.has_value(), {"too near for the rover", Mark::kPatch, kLethalColor});
