@@ -24,8 +24,9 @@ static_assert(std::endian::native == std::endian::little,
 
 template <class T>
 void put(maps::Blob& blob, const T& value) {
-  const auto* bytes = reinterpret_cast<const std::uint8_t*>(&value);
-  blob.insert(blob.end(), bytes, bytes + sizeof(T));
+  const std::size_t at = blob.size();
+  blob.resize(at + sizeof(T));
+  std::memcpy(blob.data() + at, &value, sizeof(T));
 }
 
 template <class T>
