@@ -32,11 +32,35 @@ std::uint64_t GzReadArchive::bytes_read() const {
   return static_cast<std::uint64_t>(std::max<z_off_t>(gzoffset(file_.get()), 0));
 }
 
+void GzReadArchive::mark() {
+  is_marked_ = true;
+  since_mark_.clear();
+}
+
+void GzReadArchive::rewind() {
+  again_ = since_mark_ + again_.substr(again_taken_);
+  again_taken_ = 0;
+  position_ -= since_mark_.size();
+  forget_mark();
+}
+
+void GzReadArchive::forget_mark() {
+  is_marked_ = false;
+  since_mark_.clear();
+}
+
 bool GzReadArchive::at_end() {
+  if (again_taken_ < again_.size()) return false;
   const int byte = gzgetc(file_.get());
   if (byte == -1) return true;
   gzungetc(byte, file_.get());
   return false;
+}
+
+bool GzReadArchive::is_cut_short() const {
+  int code = Z_OK;
+  gzerror(file_.get(), &code);
+  return code == Z_BUF_ERROR;
 }
 
 bool GzReadArchive::is_damaged() const {
@@ -46,15 +70,17 @@ bool GzReadArchive::is_damaged() const {
 }
 
 std::size_t GzReadArchive::read(void* buffer, std::size_t length) {
-  auto* const bytes = static_cast<unsigned char*>(buffer);
-  std::size_t done = 0;
+  auto* const bytes = static_cast<char*>(buffer);
+  std::size_t done = again_.copy(bytes, length, again_taken_);
+  again_taken_ += done;
   while (done < length) {
     const auto wanted = static_cast<unsigned>(std::min(length - done, kMostPerCall));
     const int got = gzread(file_.get(), bytes + done, wanted);
     if (got <= 0) throw std::runtime_error("the file ends inside an object");
     done += static_cast<std::size_t>(got);
-    position_ += static_cast<std::uint64_t>(got);
   }
+  position_ += done;
+  if (is_marked_) since_mark_.append(bytes, length);
   return done;
 }
 

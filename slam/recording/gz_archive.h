@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 namespace rovigo::slam {
 
@@ -26,9 +27,15 @@ class GzReadArchive final : public mrpt::serialization::CArchive {
   std::uint64_t bytes_read() const;
   /// Bytes handed out so far, uncompressed.
   std::uint64_t position() const { return position_; }
+  /// Remembers this place; `rewind` goes back to it. One place at a time.
+  void mark();
+  void rewind();
+  void forget_mark();
   /// True when nothing is left to read at a place where an object could begin.
   bool at_end();
-  /// The compressed stream stops before its end or does not decompress.
+  /// The compressed stream stops before its end.
+  bool is_cut_short() const;
+  /// It stops, does not decompress, or fails its checksum.
   bool is_damaged() const;
 
  private:
@@ -37,6 +44,10 @@ class GzReadArchive final : public mrpt::serialization::CArchive {
 
   GzFile file_;
   std::uint64_t position_ = 0;
+  bool is_marked_ = false;
+  std::string since_mark_;       ///< what was read since `mark`
+  std::string again_;            ///< what `rewind` gave back
+  std::size_t again_taken_ = 0;  ///< how much of it was read again
 };
 
 /// Writes a gz file whose bytes depend on the content alone (no name, no time in the header).

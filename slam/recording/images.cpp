@@ -7,6 +7,8 @@
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
 
+#include "slam/recording/jpeg_decoder.h"
+
 namespace rovigo::slam {
 namespace {
 
@@ -167,6 +169,9 @@ cv::Mat decode_color(std::string_view bytes, std::string& problem) {
     problem = std::to_string(header.bits) + " bits per channel where colour has 8";
   }
   if (!problem.empty()) return {};
+  if (header.kind == EncodedImage::Kind::kJpeg) {
+    return decode_jpeg(bytes, header.width, header.height, problem);
+  }
   cv::Mat image;
   if (!decode(bytes, cv::IMREAD_COLOR, image)) problem = "an image that does not decode";
   return image;

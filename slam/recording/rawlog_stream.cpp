@@ -12,6 +12,7 @@
 
 #include "maps/error.h"
 #include "slam/recording/observations.h"
+#include "slam/recording/rawlog_objects.h"
 
 namespace rovigo::slam {
 namespace {
@@ -53,7 +54,7 @@ void RawlogStream::read_object() {
   }
   mrpt::serialization::CSerializable::Ptr object;
   try {
-    object = archive_.ReadObject();
+    object = read_rawlog_object(archive_);
   } catch (const std::exception&) {  // MRPT's own words are a stack trace
     is_done_ = true;
     end_with_damage();
@@ -72,9 +73,11 @@ void RawlogStream::end_with_damage() {
         "a TUM directory");
   }
   is_damaged_ = true;
-  const bool is_cut = archive_.at_end() || archive_.is_damaged();
-  warnings_.add(path_.filename().string() + (is_cut ? " is cut short" : " is damaged or foreign") +
-                " after " + std::to_string(objects_) + " objects (uncompressed byte " +
+  // A plain (not compressed) file that is cut just ends; so does one that reads past its end.
+  const bool is_cut = archive_.is_cut_short() || (!archive_.is_damaged() && archive_.at_end());
+  warnings_.add(path_.filename().string() +
+                (is_cut ? " is cut short" : " is damaged or of another kind") + " after " +
+                std::to_string(objects_) + " objects (uncompressed byte " +
                 std::to_string(archive_.position()) + "); what stands before is used.");
 }
 

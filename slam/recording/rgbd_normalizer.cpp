@@ -41,7 +41,7 @@ std::string load_external_images(mrpt::obs::CObservation3DRangeScan& scan) {
 std::string image_problem(const mrpt::obs::CObservation3DRangeScan& scan) {
   if (!scan.hasRangeImage || depth_view(scan).empty()) return "it has no depth image";
   const cv::Mat color = color_view(scan);
-  if (color.empty()) return "it has no colour image";
+  if (color.empty()) return "it has no colour image, or a damaged one";
   if (color.depth() != CV_8U || (color.channels() != 1 && color.channels() != 3)) {
     return "its colour image is neither 8-bit colour nor grey";
   }

@@ -194,6 +194,49 @@ TEST_F(Rawlog, UncompressedAndCutAnywhereToo) {
   }
 }
 
+TEST_F(Rawlog, AnyFlippedBitIsSurvivedWithoutAWordOnTheTerminal) {
+  const std::string packed = test::read_bytes(file());
+  const std::string plain = gunzipped(file());
+  for (const std::string* whole : {&packed, &plain}) {
+    for (std::size_t i = 0; i < 300; ++i) {
+      std::string bytes = *whole;
+      const std::size_t at = (i * 7919 + 13) * 31 % bytes.size();
+      bytes[at] = static_cast<char>(bytes[at] ^ (1 << i % 8));
+      test::write_bytes(folder_ / "bad.rawlog", bytes);
+      ::testing::internal::CaptureStderr();
+      try {
+        EXPECT_LE(test::read_all(*open_recording(folder_ / "bad.rawlog")).size(), written_.size());
+      } catch (const maps::InputError& error) {
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+      }
+      EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << "byte " << at;
+    }
+  }
+}
+
+TEST_F(Rawlog, ADamagedJpegCostsItsFrameAndNoOther) {
+  std::string bytes = gunzipped(file());
+  const std::size_t jpeg = bytes.find("\xFF\xD8\xFF", bytes.size() / 2);
+  ASSERT_NE(jpeg, std::string::npos);
+  const std::size_t table = bytes.find("\xFF\xC4", jpeg);  // a Huffman table
+  for (std::size_t i = 4; i < 24; ++i) bytes[table + i] = '\xEE';
+  test::write_bytes(folder_ / "bad.rawlog", bytes);
+  const auto reader = open_recording(folder_ / "bad.rawlog");
+  EXPECT_THAT(test::read_all(*reader), SizeIs(written_.size() - 1));
+  EXPECT_EQ(reader->skipped(), 1);
+  EXPECT_THAT(test::all_in_one(reader->warnings()), HasSubstr("colour image"));
+}
+
+TEST_F(Rawlog, ImpossibleLengthsAreRefusedBeforeMemoryIsTaken) {
+  const std::string whole = gunzipped(file());
+  std::string bytes = whole;
+  const std::size_t name = bytes.find("CObservationComment") + 19;
+  bytes.replace(name + 1, 4, "\xFF\xFF\xFF\xFF");  // after the version: the text's length
+  test::write_bytes(folder_ / "bad.rawlog", bytes);
+  EXPECT_THAT(test::input_error_of([&] { open_recording(folder_ / "bad.rawlog"); }),
+              HasSubstr("not an MRPT rawlog"));
+}
+
 TEST_F(Rawlog, EmptyForeignAndMissingFilesAreRefused) {
   test::write_bytes(folder_ / "empty.rawlog", "");
   test::write_bytes(folder_ / "text.rawlog", "this is a letter, not a recording\n");
