@@ -211,7 +211,9 @@ FeatureSet extract_features(const CameraFrame& frame, const CameraModel& camera,
   descriptors.reserve(keypoints.size());
   for (std::size_t i = 0; i < keypoints.size(); ++i) {
     const cv::KeyPoint& k = keypoints[i];
-    const Eigen::Vector2d raw(k.pt.x, k.pt.y);
+    // Shrinking maps pixel centres to pixel centres: x = (x_level + 1/2) scale - 1/2.
+    const double shift = 0.5 * (octave_scale(k.octave, config) - 1.0);
+    const Eigen::Vector2d raw(k.pt.x + shift, k.pt.y + shift);
     Feature f;
     f.pixel = camera.undistort(raw).cast<float>();
     f.angle_rad = static_cast<float>(k.angle * CV_PI / 180.0);
