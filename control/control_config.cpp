@@ -58,6 +58,12 @@ void describe_steering(ControlConfig& c, maps::SettingsVisitor& v) {
           .min = 0.005,
           .max = 0.5},
          c.turn_done_angle_rad);
+  v.real({.name = "max_off_path_m",
+          .help = "Distance from the path beyond which the rover stands: nobody checked the ground "
+                  "there.",
+          .min = 0.05,
+          .max = 10.0},
+         c.max_off_path_m);
   v.real({.name = "lag_slowdown_m",
           .help = "Distance behind the reference from which the reference slows down and waits.",
           .min = 0.005,

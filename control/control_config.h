@@ -20,6 +20,7 @@ struct ControlConfig {
   double max_approach_angle_rad = 0.7;
   double turn_first_angle_rad = 0.5235987755982988;  // 30 deg
   double turn_done_angle_rad = 0.05;
+  double max_off_path_m = 0.5;
 
   // The reference waits for the rover: full pace up to the first lag, none from the second.
   double lag_slowdown_m = 0.04;

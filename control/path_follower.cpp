@@ -58,6 +58,7 @@ FollowOutput PathFollower::step(const FollowInput& input) {
     done.heading_error_rad = wrap_angle(goal().phi - input.pose.phi);
     return done;
   }
+  if (!maps::is_finite(input.pose)) return {};  // standstill is wanted
   const Leg& leg = legs_.legs()[leg_index_];
   return leg.kind == LegKind::kDrive ? drive(leg, input) : turn(leg, input);
 }
@@ -133,6 +134,11 @@ FollowOutput PathFollower::drive(const Leg& leg, const FollowInput& in) {
   out.cross_track_error_m = place.cross_track_m;
   out.heading_error_rad = wrap_angle(place.pose.phi - in.pose.phi);
 
+  if (std::abs(place.cross_track_m) > config_.max_off_path_m) {
+    pace_ = 0.0;
+    speed_pi_.reset();
+    return out;  // standstill is wanted
+  }
   if (has_arrived(leg, remaining)) {
     advance_reference(leg, 1.0, limits_.max_acceleration_m_s2, in.dt_s);
     if (std::abs(in.twist.vx) < kStandingSpeedMS) next_leg();

@@ -43,6 +43,12 @@ void PosePredictor::advance(double now_s) {
   }
   const double dt = now_s - now_s_;
   if (!(dt > 0.0)) return;
+  if (dt > kMemoryS) {  // nobody knows what the drive did meanwhile: its own watchdog stopped it
+    motions_.clear();
+    modelled_ = {};
+    now_s_ = now_s;
+    return;
+  }
   // First-order lag, solved exactly over the interval: its mean and its end value.
   const double lag = drive_.lag_s, delay = drive_.command_delay_s;
   const double decay = lag > 0.0 ? std::exp(-dt / lag) : 0.0;

@@ -12,6 +12,7 @@ namespace {
 
 using planning::TrajectoryPoint;
 
+constexpr double kLargest = 1e6;  // metres, seconds: differences stay exact and finite
 constexpr double kNoLengthM = 1e-7;
 constexpr double kNoTurnRad = 1e-7;
 constexpr double kAtRestMS = 1e-6;
@@ -21,12 +22,11 @@ void require_usable(const planning::Trajectory& trajectory) {
   if (points.empty()) throw maps::InputError("The trajectory has no points; plan one first.");
   for (std::size_t i = 0; i < points.size(); ++i) {
     const TrajectoryPoint& p = points[i];
-    const bool finite = maps::is_finite(p.pose) && std::isfinite(p.time_s) &&
-                        std::isfinite(p.speed_m_s) && std::isfinite(p.yaw_rate_rad_s) &&
-                        std::isfinite(p.curvature_1_m);
-    if (!finite) {
-      throw maps::InputError("Trajectory point " + std::to_string(i) +
-                             " holds a number that is not finite.");
+    for (const double v : {p.time_s, p.pose.x, p.pose.y, p.pose.phi, p.speed_m_s, p.yaw_rate_rad_s,
+                           p.curvature_1_m}) {
+      if (std::abs(v) <= kLargest) continue;  // NaN is not
+      throw maps::InputError("Trajectory point " + std::to_string(i) + " holds " +
+                             std::to_string(v) + ", which is no figure of an indoor drive.");
     }
     if (i > 0 && p.time_s < points[i - 1].time_s) {
       throw maps::InputError("Trajectory point " + std::to_string(i) + " has time " +

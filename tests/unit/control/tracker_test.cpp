@@ -190,6 +190,28 @@ TEST(Tracker, GivesUpWhenTheWheelsSpin) {
   EXPECT_EQ(run.log.steps.back().command.vx, 0.0);
 }
 
+TEST(Tracker, StandsWhereNobodyPlannedADrive) {
+  DriveSetup carried_off;
+  carried_off.disturb = [done = false](double t, Plant& plant) mutable {
+    if (done || t < 4.0) return;
+    done = true;
+    plant.put({plant.pose().x, plant.pose().y + 1.0, plant.pose().phi});
+  };
+  const Outcome run = drive(long_straight(), carried_off);
+  EXPECT_EQ(run.log.status, TrackStatus::kNoProgress);
+  EXPECT_EQ(speed_at(run.log, 6.0), 0.0);
+}
+
+TEST(Tracker, GoesOnWhenAWrongPoseIsTakenBack) {
+  DriveSetup blip;
+  blip.tamper = [](double t, PoseInput& pose) {
+    if (t > 4.0 && t < 6.0) pose.map_from_base.y += 2.0;
+  };
+  const Outcome run = drive(long_straight(), blip);
+  EXPECT_EQ(run.log.status, TrackStatus::kReached);
+  EXPECT_LT(run.metrics.cross_track_max_m, 0.1);
+}
+
 TEST(Tracker, TimesOutWhenFarBehindThePlan) {
   ControlConfig hasty;
   hasty.timeout_factor = 1.0;
