@@ -16,16 +16,24 @@ ImuSensor::ImuSensor(const ImuNoise& noise, std::uint64_t seed) : noise_(noise),
   }
 }
 
+void ImuSensor::advance(const BodyState& state) {
+  summed_rate_ += state.world_from_base.linear().transpose() * state.angular_velocity;
+  ++summed_steps_;
+}
+
 mrpt::obs::CObservationIMU::Ptr ImuSensor::sample(const BodyState& state, double interval_s) {
   const Eigen::Matrix3d base_from_world = state.world_from_base.linear().transpose();
   const Eigen::Vector3d acceleration = (state.velocity - previous_velocity_) / interval_s;
   previous_velocity_ = state.velocity;
   Eigen::Vector3d force = base_from_world * (acceleration + Eigen::Vector3d(0, 0, kGravity));
   Eigen::Vector3d rate = base_from_world * state.angular_velocity;
+  if (summed_steps_ > 0) rate = summed_rate_ / summed_steps_;
+  summed_rate_.setZero();
+  summed_steps_ = 0;
   for (int i = 0; i < 3; ++i) {
     rate[i] += gyro_bias_[i] + noise_.gyro_sigma_rad_s * random_.gaussian();
     force[i] += accelerometer_bias_[i] + noise_.accelerometer_sigma_m_s2 * random_.gaussian();
-    gyro_bias_[i] += noise_.gyro_walk_rad_s2_sqrt_hz * std::sqrt(interval_s) * random_.gaussian();
+    gyro_bias_[i] += noise_.gyro_walk_rad_s_per_sqrt_s * std::sqrt(interval_s) * random_.gaussian();
   }
   auto obs = mrpt::obs::CObservationIMU::Create();
   obs->sensorLabel = "imu";

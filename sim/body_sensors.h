@@ -18,8 +18,11 @@ class ImuSensor {
  public:
   ImuSensor(const ImuNoise& noise, std::uint64_t seed);
 
-  /// One sample over the interval since the previous one: mean turn rate is taken as the present
-  /// one, specific force as the change of velocity over `interval_s`, minus gravity.
+  /// The body's motion after each physics step.
+  void advance(const BodyState& state);
+
+  /// One sample over the interval since the previous one: the mean turn rate of its steps, and the
+  /// specific force (change of velocity over `interval_s`, minus gravity).
   mrpt::obs::CObservationIMU::Ptr sample(const BodyState& state, double interval_s);
 
   /// Forgets the previous velocity (after the rover was carried).
@@ -31,6 +34,8 @@ class ImuSensor {
   Eigen::Vector3d gyro_bias_;
   Eigen::Vector3d accelerometer_bias_;
   Eigen::Vector3d previous_velocity_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d summed_rate_ = Eigen::Vector3d::Zero();
+  int summed_steps_ = 0;
 };
 
 /// Counts ticks on both sides and integrates them with the nominal radius and track,

@@ -4,6 +4,7 @@
 #include <limits>
 #include <thread>
 
+#include "sim/pixel_rays.h"
 #include "sim/ray_scene.h"
 #include "sim/shading.h"
 #include "sim/surfaces.h"
@@ -14,29 +15,6 @@ namespace {
 static_assert(Texture::kSide == 512 && Texture::kLevels == 10, "shading.cpp knows these two");
 
 constexpr float kFarM = 60.0F;
-
-/// Ray directions in the world: D(x, y) = d0 + x dx + y dy, with depth 1 along the optical axis.
-struct PixelRays {
-  Eigen::Vector3d origin;
-  Eigen::Vector3d d0;
-  Eigen::Vector3d dx;
-  Eigen::Vector3d dy;
-};
-
-PixelRays pixel_rays(const mrpt::poses::CPose3D& world_from_camera,
-                     const mrpt::img::TCamera& camera) {
-  Eigen::Matrix3d r;
-  const auto& m = world_from_camera.getRotationMatrix();
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) r(i, j) = m(i, j);
-  }
-  PixelRays rays;
-  rays.origin = {world_from_camera.x(), world_from_camera.y(), world_from_camera.z()};
-  rays.dx = r.col(0) / camera.fx();
-  rays.dy = r.col(1) / camera.fy();
-  rays.d0 = r.col(2) - camera.cx() * rays.dx - camera.cy() * rays.dy;
-  return rays;
-}
 
 void linear_form(const Eigen::Vector3d& axis, const PixelRays& rays, float out[3]) {
   out[0] = static_cast<float>(axis.dot(rays.d0));
@@ -53,7 +31,7 @@ struct Renderer::Impl {
   std::vector<std::vector<const std::uint8_t*>> levels_of_face;
   std::unique_ptr<RayScene> scene;
 
-  explicit Impl(const WorldModel& world) : surfaces(make_surfaces(world, library)) {
+  explicit Impl(const WorldModel& world) : surfaces(make_surfaces(world.solids, &library)) {
     for (const auto& quad : surfaces.quads) {
       face_of_quad.push_back(static_cast<std::uint32_t>(quad.face));
     }
@@ -128,34 +106,6 @@ void Renderer::render(const mrpt::poses::CPose3D& world_from_camera,
   for (int i = 1; i < threads; ++i) helpers.emplace_back(render_rows, i, threads);
   render_rows(0, std::max(1, threads));
   for (auto& helper : helpers) helper.join();
-}
-
-std::vector<Renderer::SurfacePoint> Renderer::surface_points(
-    const mrpt::poses::CPose3D& world_from_camera, const mrpt::img::TCamera& camera,
-    int stride) const {
-  const PixelRays rays = pixel_rays(world_from_camera, camera);
-  const int columns = (static_cast<int>(camera.ncols) + stride - 1) / stride;
-  std::vector<std::uint32_t> quad(static_cast<std::size_t>(columns));
-  std::vector<float> t(static_cast<std::size_t>(columns));
-  std::vector<SurfacePoint> points;
-  for (int y = 0; y < static_cast<int>(camera.nrows); y += stride) {
-    const Eigen::Vector3f first = (rays.d0 + y * rays.dy).cast<float>();
-    const Eigen::Vector3f step = (rays.dx * stride).cast<float>();
-    impl_->scene->cast_row(rays.origin.cast<float>(), first, step, columns, kFarM, quad.data(),
-                           t.data());
-    for (int i = 0; i < columns; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      if (quad[k] == RayScene::kMiss) continue;
-      const Eigen::Vector3f p =
-          rays.origin.cast<float>() + t[k] * (first + static_cast<float>(i) * step);
-      const Eigen::Vector3d& n = impl_->surfaces.faces[impl_->face_of_quad[quad[k]]].normal;
-      points.push_back(
-          {{p.x(), p.y(), p.z()},
-           {static_cast<float>(n.x()), static_cast<float>(n.y()), static_cast<float>(n.z())},
-           t[k]});
-    }
-  }
-  return points;
 }
 
 }  // namespace rovigo::sim

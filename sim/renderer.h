@@ -31,16 +31,6 @@ class Renderer {
   void render(const mrpt::poses::CPose3D& world_from_camera, const mrpt::img::TCamera& camera,
               int threads, View& view) const;
 
-  /// Depth alone, every `stride`-th pixel of every `stride`-th row, as points in the world with
-  /// the surface's outward normal.
-  struct SurfacePoint {
-    float position[3];
-    float normal[3];
-    float depth_m;
-  };
-  std::vector<SurfacePoint> surface_points(const mrpt::poses::CPose3D& world_from_camera,
-                                           const mrpt::img::TCamera& camera, int stride) const;
-
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

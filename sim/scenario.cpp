@@ -62,11 +62,11 @@ void ImuNoise::describe(maps::SettingsVisitor& v) {
           .min = 0,
           .max = 1},
          gyro_bias_max_rad_s);
-  v.real({.name = "gyro_walk_rad_s2_sqrt_hz",
+  v.real({.name = "gyro_walk_rad_s_per_sqrt_s",
           .help = "Random walk of the gyro's bias.",
           .min = 0,
           .max = 0.1},
-         gyro_walk_rad_s2_sqrt_hz);
+         gyro_walk_rad_s_per_sqrt_s);
   v.real({.name = "accelerometer_sigma_m_s2",
           .help = "White noise of each sample.",
           .min = 0,
@@ -246,7 +246,7 @@ Scenario ideal_scenario() {
   s.camera.color_noise_levels = 0.0;
   s.camera.exposure_s = 0.0;
   s.camera.auto_exposure = false;
-  s.imu.gyro_sigma_rad_s = s.imu.gyro_bias_max_rad_s = s.imu.gyro_walk_rad_s2_sqrt_hz = 0.0;
+  s.imu.gyro_sigma_rad_s = s.imu.gyro_bias_max_rad_s = s.imu.gyro_walk_rad_s_per_sqrt_s = 0.0;
   s.imu.accelerometer_sigma_m_s2 = s.imu.accelerometer_bias_max_m_s2 = 0.0;
   s.wheels.scale_error_max = s.wheels.track_error_max = s.wheels.slip_events_per_minute = 0.0;
   s.pose.sigma_position_m = s.pose.sigma_heading_rad = s.pose.latency_s = s.pose.jitter_s = 0.0;

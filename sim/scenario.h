@@ -31,7 +31,7 @@ struct ImuNoise {
   double rate_hz = 100.0;
   double gyro_sigma_rad_s = 0.003;
   double gyro_bias_max_rad_s = 0.01;  ///< each axis drawn by seed within +- this
-  double gyro_walk_rad_s2_sqrt_hz = 1e-4;
+  double gyro_walk_rad_s_per_sqrt_s = 1e-4;
   double accelerometer_sigma_m_s2 = 0.02;
   double accelerometer_bias_max_m_s2 = 0.1;
   void describe(maps::SettingsVisitor& v);

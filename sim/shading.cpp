@@ -64,13 +64,13 @@ inline void locate(const FaceView& face, const RowShading& row, int x0, int coun
     const float short_side = along_x ? b : a;
     const float limit = short_side > 1.0F ? short_side : 1.0F;
     float taps = static_cast<float>(static_cast<int>(long_side / limit + 0.75F));
-    taps = taps < 1.0F ? 1.0F : taps;
+    taps = taps > 1.0F ? taps : 1.0F;  // written so that a NaN, too, ends up inside
     taps = taps > kMaxTaps ? static_cast<float>(kMaxTaps) : taps;
     const float per_tap = 1.0F / taps;
     float width = long_side * per_tap;
     width = width > limit ? width : limit;
     float level = rough_log2(width);
-    level = level < 0.0F ? 0.0F : level;
+    level = level > 0.0F ? level : 0.0F;
     out.level[i] = level > kMaxLevel ? kMaxLevel : level;
     out.taps[i] = taps;
     out.step_u[i] = (along_x ? du_dx : du_dy) * per_tap;

@@ -124,6 +124,7 @@ struct Simulator::Impl {
     ++step_index;
     apply_kidnaps();
     update_truth();
+    imu.advance(state);
     sense();
   }
 

@@ -18,7 +18,7 @@ float light_on(const Eigen::Vector3d& normal) {
 
 class Builder {
  public:
-  Builder(TextureLibrary& library, Surfaces& out) : library_(library), out_(out) {}
+  Builder(TextureLibrary* library, Surfaces& out) : library_(library), out_(out) {}
 
   void add(const Solid& solid) {
     corners_ = corners_of(solid);
@@ -75,7 +75,7 @@ class Builder {
     face.normal =
         (quad.corners[1] - quad.corners[0]).cross(quad.corners[2] - quad.corners[0]).normalized();
     face.origin = quad.corners[0];
-    face.texture = library_.get(solid.material);
+    face.texture = library_ ? library_->get(solid.material) : nullptr;
     const double scale = face.texture ? face.texture->texels_per_m : 1.0;
     face.u_axis = along * scale;
     face.v_axis = face.normal.cross(along) * scale;
@@ -89,17 +89,17 @@ class Builder {
     out_.quads.push_back(quad);
   }
 
-  TextureLibrary& library_;
+  TextureLibrary* library_;
   Surfaces& out_;
   std::vector<Eigen::Vector3d> corners_;
 };
 
 }  // namespace
 
-Surfaces make_surfaces(const WorldModel& world, TextureLibrary& library) {
+Surfaces make_surfaces(const std::vector<Solid>& solids, TextureLibrary* library) {
   Surfaces out;
   Builder builder(library, out);
-  for (const auto& solid : world.solids) {
+  for (const auto& solid : solids) {
     if (solid.visible) builder.add(solid);
   }
   return out;

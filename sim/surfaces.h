@@ -32,7 +32,7 @@ struct Surfaces {
   std::vector<Quad> quads;
 };
 
-/// `library` owns the textures that faces point to.
-Surfaces make_surfaces(const WorldModel& world, TextureLibrary& library);
+/// `library` owns the textures that faces point to; without one they have none.
+Surfaces make_surfaces(const std::vector<Solid>& solids, TextureLibrary* library);
 
 }  // namespace rovigo::sim

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "maps/error.h"
-#include "sim/renderer.h"
 #include "sim/simulator.h"
 #include "sim/world_model.h"
 
@@ -157,51 +156,6 @@ maps::OccupancyGrid true_grid(const World& world, double resolution_m, double mi
   }
   flood_free(grid, start);
   return grid;
-}
-
-struct SeenSurfaces::Impl {
-  Renderer renderer;
-  maps::OccupancyGrid truth;
-  double min_height_m;
-  double max_height_m;
-  std::vector<bool> seen;
-};
-
-SeenSurfaces::SeenSurfaces(const World& world, double resolution_m, double min_height_m,
-                           double max_height_m)
-    : impl_(new Impl{Renderer(world.model()),
-                     true_grid(world, resolution_m, min_height_m, max_height_m),
-                     min_height_m,
-                     max_height_m,
-                     {}}) {
-  impl_->seen.assign(impl_->truth.cells.size(), false);
-}
-SeenSurfaces::~SeenSurfaces() = default;
-
-void SeenSurfaces::add_view(const mrpt::poses::CPose3D& world_from_camera,
-                            const mrpt::img::TCamera& camera) {
-  constexpr int kStride = 4;              // pixels
-  constexpr float kRangeM = 6.0F;         // the camera's default range
-  constexpr double kIntoSurfaceM = 1e-4;  // a point on a cell border belongs to the solid's cell
-  const auto& g = impl_->truth.geometry;
-  for (const auto& p : impl_->renderer.surface_points(world_from_camera, camera, kStride)) {
-    const double z = p.position[2];
-    if (p.depth_m > kRangeM || z < impl_->min_height_m || z > impl_->max_height_m) continue;
-    const TPoint2D inside{p.position[0] - kIntoSurfaceM * p.normal[0],
-                          p.position[1] - kIntoSurfaceM * p.normal[1]};
-    const maps::Cell c = g.cell_at(inside);
-    if (g.contains(c)) impl_->seen[g.index_of(c)] = true;
-  }
-}
-
-maps::OccupancyGrid SeenSurfaces::grid() const {
-  maps::OccupancyGrid out = impl_->truth;
-  for (std::size_t i = 0; i < out.cells.size(); ++i) {
-    if (maps::OccupancyGrid::is_occupied(out.cells[i]) && !impl_->seen[i]) {
-      out.cells[i] = maps::OccupancyGrid::kUnknown;
-    }
-  }
-  return out;
 }
 
 }  // namespace rovigo::sim
