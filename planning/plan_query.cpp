@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <numeric>
 
 #include "planning/escape.h"
 #include "planning/refusal.h"
 #include "planning/sampling_planner.h"
 #include "planning/shortcut.h"
 #include "planning/timing.h"
+#include "planning/tour.h"
 
 namespace rovigo::planning {
 
@@ -49,7 +52,7 @@ PlanningContext::PlanningContext(const maps::OccupancyGrid& g, const maps::Robot
 
 PlanResult PlanQuery::run() {
   begin(PlanStage::kSearch);
-  if (settle_start() && settle_targets() && search_legs()) {
+  if (settle_start() && settle_targets() && order_targets() && search_legs()) {
     result_.status = PlanStatus::kOk;
     begin(PlanStage::kSmooth);
     smooth_path();
@@ -107,6 +110,34 @@ bool PlanQuery::settle_targets() {
     }
   }
   return true;
+}
+
+bool PlanQuery::order_targets() {
+  result_.via_order.resize(request_.via.size());
+  std::iota(result_.via_order.begin(), result_.via_order.end(), std::size_t{0});
+  if (request_.via_order == ViaOrder::kGiven || request_.via.size() < 2) return true;
+  std::vector<TPoint2D> places{start_};
+  places.insert(places.end(), targets_.begin(), targets_.end());
+  const auto& g = context_.grid.geometry;
+  const SearchWeights weights{.soft_cost = context_.config.astar.soft_cost_weight};
+  const auto between = [&](std::size_t i, std::size_t j) {
+    if (g.cell_at(places[i]) == g.cell_at(places[j])) return maps::distance(places[i], places[j]);
+    const auto way =
+        search_.find(context_.search_grid, g.cell_at(places[i]), g.cell_at(places[j]), weights);
+    result_.expanded_cells += way.expanded_cells;
+    return way.found ? way.length_m : std::numeric_limits<double>::infinity();
+  };
+  std::vector<std::vector<double>> cost(places.size(), std::vector<double>(places.size(), 0.0));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    for (std::size_t j = i + 1; j < places.size(); ++j) cost[i][j] = cost[j][i] = between(i, j);
+  }
+  const std::vector<TPoint2D> as_given = targets_;
+  result_.via_order.clear();
+  for (const std::size_t place : shortest_order(cost)) {
+    targets_[result_.via_order.size()] = as_given[place - 1];
+    result_.via_order.push_back(place - 1);
+  }
+  return true;  // what cannot be reached is refused leg by leg
 }
 
 bool PlanQuery::search_legs() {
@@ -302,7 +333,8 @@ std::string PlanQuery::map_extent() const {
 
 std::string PlanQuery::name_of_target(std::size_t index) const {
   if (index == request_.via.size()) return "goal";
-  return "via point " + std::to_string(index + 1);
+  const std::size_t given = result_.via_order.empty() ? index : result_.via_order[index];
+  return "via point " + std::to_string(given + 1);
 }
 
 }  // namespace rovigo::planning

@@ -40,6 +40,7 @@ class PlanQuery {
  private:
   bool settle_start();
   bool settle_targets();
+  bool order_targets();
   bool search_legs();
   bool search_leg(const TPoint2D& from, const TPoint2D& to, const std::string& name);
   bool sample_leg(const TPoint2D& from, const TPoint2D& to, const std::string& name, Path& leg);

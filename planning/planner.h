@@ -22,10 +22,17 @@ namespace rovigo::planning {
 /// Stages of one query, in order; libraries read no clock, so whoever wants times stamps these.
 enum class PlanStage { kSearch, kSmooth, kTime, kDone };
 
+/// In which order via points are visited.
+enum class ViaOrder {
+  kGiven,
+  kShortest,  ///< by the lengths of the ways between them; see tour.h
+};
+
 struct PlanRequest {
   TPose2D start;
   bool start_heading_given = false;  ///< false: the rover is taken to face along the path
-  std::vector<TPoint2D> via;         ///< visited in this order
+  std::vector<TPoint2D> via;
+  ViaOrder via_order = ViaOrder::kGiven;
   TPose2D goal;
   bool goal_heading_given = false;               ///< true: a final turn in place to goal.phi
   std::uint64_t seed = 1;                        ///< sampling planners only
@@ -44,6 +51,7 @@ struct PlanResult {
   double path_length_m = 0.0;
   double min_clearance_m = 0.0;  ///< footprint circle to the nearest occupied cell's edge
   std::size_t expanded_cells = 0;
+  std::vector<std::size_t> via_order;  ///< indices into the request's via, as they are visited
   bool escape = false;  ///< started nearer to an obstacle than robot_radius_m; leaves it slowly
 };
 

@@ -188,6 +188,20 @@ TEST(Planner, PassesThroughViaPointsInTheirOrder) {
   EXPECT_EQ(next, 3U);
 }
 
+TEST(Planner, VisitsViaPointsInTheShortestOrderWhenAsked) {
+  const auto grid = two_rooms();
+  auto request = from_to({1, 1}, {7, 5});
+  request.via = {{6, 4}, {1, 3}, {5, 1}, {2, 5}};
+  const auto planner = planner_for(grid);
+  const auto given = planner.plan(request);
+  EXPECT_THAT(given.via_order, testing::ElementsAre(0, 1, 2, 3));
+  request.via_order = ViaOrder::kShortest;
+  const auto shortest = planner.plan(request);
+  expect_sound(shortest, grid);
+  EXPECT_THAT(shortest.via_order, testing::ElementsAre(1, 3, 2, 0));
+  EXPECT_LT(shortest.path_length_m, given.path_length_m - 5.0);
+}
+
 TEST(Planner, AViaPointInAWallIsNamed) {
   auto request = from_to({1, 1}, {5, 1});
   request.via = {{3, 3}, {4, 1}};
