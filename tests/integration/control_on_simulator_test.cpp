@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "control/tracking_metrics.h"
+#include "tests/unit/control/mission_check.h"
 #include "tests/unit/control/plant.h"
 #include "tests/unit/control/simulated_drive.h"
 
@@ -11,6 +12,7 @@ namespace rovigo::control {
 namespace {
 
 using testing::drive_in_hall;
+using testing::expect_mission_done;
 using testing::SimulatedDrive;
 using testing::TrajectoryBuilder;
 
@@ -67,8 +69,8 @@ TEST(ControlOnSimulator, SameSettingsServeSlowAndFast) {
 TEST(ControlOnSimulator, TracksWithSlipOnPoorAndLatePoses) {
   SimulatedDrive setup;
   setup.scenario = sim::Scenario();  // the default one: slip events, worn encoders
-  setup.pose_latency_s = 0.1;
-  setup.position_noise_m = setup.heading_noise_rad = 0.01;
+  setup.poses = {
+      .latency_s = 0.1, .jitter_s = 0.02, .position_noise_m = 0.01, .heading_noise_rad = 0.01};
   for (const std::uint64_t seed : {1, 2, 3}) {
     setup.seed = seed;
     expect_all_tracked(setup, {.cross_track_rms_m = 0.02,
@@ -78,10 +80,14 @@ TEST(ControlOnSimulator, TracksWithSlipOnPoorAndLatePoses) {
   }
 }
 
+TEST(ControlOnSimulator, RandomMissionsOnPoorPosesAllArrive) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) expect_mission_done(seed);
+}
+
 TEST(ControlOnSimulator, SameSeedSameBytes) {
   SimulatedDrive setup;
   setup.scenario = sim::Scenario();
-  setup.position_noise_m = 0.01;
+  setup.poses.position_noise_m = 0.01;
   const auto plan = testing::moderate_curve(setup.robot);
   const DriveLog a = drive_in_hall(plan, setup), b = drive_in_hall(plan, setup);
   ASSERT_EQ(a.steps.size(), b.steps.size());
