@@ -32,14 +32,14 @@ double numpy_sum(const double* terms, std::size_t count) {
 
 /// Weights for distances 0 .. radius.
 std::vector<double> kernel(double sigma) {
-  const int radius = static_cast<int>(4.0 * sigma + 0.5);
+  const auto radius = static_cast<int>(std::floor(4.0 * sigma + 0.5));  // as SciPy rounds
   std::vector<double> full;
   for (int x = -radius; x <= radius; ++x)
     full.push_back(std::exp(-0.5 / (sigma * sigma) * (x * x)));
   const double sum = numpy_sum(full.data(), full.size());
   std::vector<double> weights;
-  for (int x = 0; x <= radius; ++x) {
-    weights.push_back(full[static_cast<std::size_t>(radius + x)] / sum);
+  for (auto i = static_cast<std::size_t>(radius); i < full.size(); ++i) {
+    weights.push_back(full[i] / sum);
   }
   return weights;
 }

@@ -25,7 +25,9 @@ void RowSchema::blob(const char* name, const Blob&) {
 std::string RowSchema::create_sql() const {
   std::string sql = "CREATE TABLE ";
   sql += table_ + " (row INTEGER PRIMARY KEY";
-  for (const auto& [name, type] : columns_) sql += ", " + name + " " + type + " NOT NULL";
+  for (const auto& [name, type] : columns_) {
+    sql.append(", ").append(name).append(" ").append(type).append(" NOT NULL");
+  }
   return sql + ")";
 }
 

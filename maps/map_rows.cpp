@@ -38,7 +38,10 @@ PoseNumbers numbers_of(const CPose3D& pose) {
 
 CPose3D pose_of(const PoseNumbers& n) {
   mrpt::math::CMatrixDouble33 r;
-  for (int i = 0; i < 9; ++i) r(i / 3, i % 3) = n[static_cast<std::size_t>(3 + i)];
+  std::size_t next = 3;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) r(row, column) = n[next++];
+  }
   return CPose3D(r, mrpt::math::TPoint3D(n[0], n[1], n[2]));
 }
 
@@ -55,8 +58,8 @@ bool all_finite(std::span<const double> numbers) {
 /// Empty for a pose that can be: finite, with a rotation matrix that rotates.
 std::string pose_problem(const PoseNumbers& n) {
   if (!all_finite(n)) return "the pose is not finite";
-  Eigen::Matrix3d r;
-  for (int i = 0; i < 9; ++i) r(i / 3, i % 3) = n[static_cast<std::size_t>(3 + i)];
+  const Eigen::Matrix3d r =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(n.data() + 3);
   const bool rotates =
       (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < 1e-6 &&
       r.determinant() > 0.0;

@@ -108,14 +108,25 @@ TEST(KilledWriter, OldOrNewMapOpensWhole) {
   std::mt19937_64 rng(7);
   int seen[2] = {0, 0};
   for (int i = 0; i < 60; ++i) {
+    int saved_once[2];
+    ASSERT_EQ(::pipe(saved_once), 0);
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
-      for (int k = i;; ++k) save_map(maps[k % 2], path);
+      save_map(maps[i % 2], path);
+      if (::write(saved_once[1], "x", 1) != 1) ::_exit(1);
+      for (int k = i + 1;; ++k) save_map(maps[k % 2], path);
+    }
+    ::close(saved_once[1]);
+    // Every third is killed at once, the others somewhere in a later save.
+    char byte = 0;
+    if (i % 3 != 0) {
+      ASSERT_EQ(::read(saved_once[0], &byte, 1), 1);
     }
     ::usleep(static_cast<useconds_t>(rng() % 20000));
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
+    ::close(saved_once[0]);
     const SavedMap found = load_map(path);
     const bool first = difference(found, maps[0]) == "";
     EXPECT_TRUE(first || difference(found, maps[1]) == "") << "after kill " << i;
