@@ -141,10 +141,20 @@ class Checker {
     if (!roomy) ++report_.unsafe_samples;
   }
 
+  /// Off the map or on unknown ground; a point that rounding put across the border is not.
   bool on_blocked_ground(const TPoint2D& p) const {
+    for (const double dx : {0.0, -kClearanceRounding, kClearanceRounding}) {
+      for (const double dy : {0.0, -kClearanceRounding, kClearanceRounding}) {
+        if (is_open({p.x + dx, p.y + dy})) return false;
+      }
+    }
+    return true;
+  }
+
+  bool is_open(const TPoint2D& p) const {
     const maps::Cell cell = grid_.geometry.cell_at(p);
-    if (!grid_.geometry.contains(cell)) return true;
-    return options_.unknown_is_blocked && maps::OccupancyGrid::is_unknown(grid_.at(cell));
+    if (!grid_.geometry.contains(cell)) return false;
+    return !options_.unknown_is_blocked || !maps::OccupancyGrid::is_unknown(grid_.at(cell));
   }
 
   /// Brute force over all cells within reach.
