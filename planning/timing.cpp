@@ -8,6 +8,9 @@ namespace rovigo::planning {
 namespace {
 
 constexpr double kProfileSpacingM = 0.01;
+// Of the yaw acceleration, for the change of curvature and for the change of speed each; a little
+// is left for what lies between the profile's points.
+constexpr double kYawShare = 0.48;
 constexpr double kSmallestTurnRad = 1e-3;  // below it a turn in place is left to the tracker
 
 /// Speed profile over points along one curve.
@@ -28,14 +31,14 @@ double speed_limit(double curvature, double curvature_rate, bool slow, const Mot
     v = std::min(v, std::sqrt(limits.lateral_acceleration_m_s2 / bend));
   }
   const double rate = std::abs(curvature_rate);
-  if (rate > 1e-9) v = std::min(v, std::sqrt(0.5 * limits.yaw_acceleration_rad_s2 / rate));
+  if (rate > 1e-9) v = std::min(v, std::sqrt(kYawShare * limits.yaw_acceleration_rad_s2 / rate));
   return v;
 }
 
 double acceleration_limit(double curvature, const MotionLimits& limits) {
   const double bend = std::abs(curvature);
   if (bend < 1e-9) return limits.acceleration_m_s2;
-  return std::min(limits.acceleration_m_s2, 0.5 * limits.yaw_acceleration_rad_s2 / bend);
+  return std::min(limits.acceleration_m_s2, kYawShare * limits.yaw_acceleration_rad_s2 / bend);
 }
 
 Profile speed_profile(const PathPiece& piece, const MotionLimits& limits,

@@ -31,7 +31,7 @@ struct TimingProblem {
 };
 
 /// Time-optimal within each curve for limits on speed, turn rate, wheel speed and lateral
-/// acceleration; half of the yaw acceleration is kept for the change of curvature, half for the
+/// acceleration; the yaw acceleration is shared equally between the change of curvature and the
 /// change of speed, which makes the usual forward-backward pass exact (Verscheure et al. 2009
 /// discuss the full problem). Every piece begins and ends at rest.
 Trajectory time_path(const TimingProblem& problem, const MotionLimits& limits,
