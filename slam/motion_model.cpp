@@ -119,12 +119,15 @@ MotionPrediction MotionModel::predict(double time_s) {
     out.prior.information = planar_prior_information(covariance, pose.phi, tracking_);
     out.sigma_position_m = std::sqrt(std::max(0.0, covariance(0, 0) + covariance(1, 1)));
     out.sigma_heading_rad = std::sqrt(std::max(0.0, covariance(2, 2)));
+    out.turn_rate_rad_s = std::abs(planar_filter_.twist().omega);
     return out;
   }
-  const double dt = std::max(0.0, time_s - time_s_) + unseen_s_;
+  const double dt = std::max(0.0, time_s - time_s_);
   out.prior.map_from_base = predict_free(time_s);
-  out.sigma_position_m = 0.03 + 0.5 * dt;
-  out.sigma_heading_rad = has_gyro_ ? 0.02 + 0.05 * dt : 0.05 + 1.0 * dt;
+  out.turn_rate_rad_s = twist_.tail<3>().norm();
+  out.sigma_position_m = tracking_.free_motion_sigma_m + 0.5 * unseen_s_;
+  out.sigma_heading_rad =
+      has_gyro_ ? 0.02 + 0.05 * (dt + unseen_s_) : 0.02 + 0.5 * dt + 1.0 * unseen_s_;
   out.prior.information.diagonal().head<3>().setConstant(1.0 / std::pow(out.sigma_position_m, 2));
   out.prior.information.diagonal().tail<3>().setConstant(1.0 / std::pow(out.sigma_heading_rad, 2));
   return out;

@@ -15,6 +15,7 @@ struct MotionPrediction {
   PosePrior6 prior;
   double sigma_position_m = 0.0;
   double sigma_heading_rad = 0.0;
+  double turn_rate_rad_s = 0.0;  ///< turning smears and shears images
 };
 
 class MotionModel {

@@ -171,8 +171,8 @@ PlaceMatch match_place(const LandmarkMap& map, const std::vector<int>& core,
     }
     std::optional<PosePrior6> prior;
     if (on_floor) prior = floor_prior(pose, tracking);
-    out.solution = optimize_pose(observations_of(map, out.matches, features, pose), pose, prior,
-                                 map.camera(), map.base_from_camera());
+    out.solution = optimize_pose(observations_of(map, out.matches, features, pose, 0.0), pose,
+                                 prior, map.camera(), map.base_from_camera());
     if (out.solution.inliers < 10 || !is_finite(out.solution.map_from_base)) return out;
     pose = out.solution.map_from_base;
   }

@@ -104,6 +104,16 @@ void TrackingConfig::describe(maps::SettingsVisitor& v) {
           .min = 0.1,
           .max = 5.0},
          pixel_sigma);
+  v.real({.name = "smear_s",
+          .help = "Share of a frame's time whose turning is taken as error of its keypoints.",
+          .min = 0.0,
+          .max = 0.1},
+         smear_s);
+  v.real({.name = "free_motion_sigma_m",
+          .help = "How far a hand-held camera departs from constant velocity in one frame.",
+          .min = 1e-4,
+          .max = 1.0},
+         free_motion_sigma_m);
   v.real({.name = "plane_height_sigma_m",
           .help = "How far a rover's base may leave the floor's plane.",
           .min = 1e-4,

@@ -41,6 +41,8 @@ struct TrackingConfig {
   double search_radius_px = 14.0;       ///< around the predicted place of a landmark
   int max_descriptor_distance = 64;     ///< of 256 bits
   double pixel_sigma = 0.8;             ///< of a keypoint on the finest pyramid level
+  double smear_s = 0.003;               ///< exposure and rolling shutter: turning blurs and shears
+  double free_motion_sigma_m = 0.002;   ///< a hand-held camera's departure from constant velocity
   double plane_height_sigma_m = 0.006;  ///< a rover stays on the floor
   double plane_tilt_sigma_rad = 0.006;
   double keyframe_distance_m = 0.25;

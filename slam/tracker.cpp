@@ -84,8 +84,8 @@ std::vector<FeatureMatch> match_by_projection(const LandmarkMap& map,
 
 std::vector<PointObservation> observations_of(const LandmarkMap& map,
                                               const std::vector<FeatureMatch>& matches,
-                                              const FeatureSet& features,
-                                              const Se3& map_from_base) {
+                                              const FeatureSet& features, const Se3& map_from_base,
+                                              double smear_px) {
   const Se3 camera_from_map = (map_from_base * map.base_from_camera()).inverse();
   std::vector<PointObservation> out;
   out.reserve(matches.size());
@@ -103,7 +103,8 @@ std::vector<PointObservation> observations_of(const LandmarkMap& map,
     PointObservation o;
     o.point_map = l.position_map;
     o.pixel = f.pixel.cast<double>();
-    o.pixel_sigma = std::sqrt(noise.pixel_sigma * noise.pixel_sigma + across * per_m * per_m);
+    o.pixel_sigma = std::sqrt(noise.pixel_sigma * noise.pixel_sigma + across * per_m * per_m +
+                              smear_px * smear_px);
     o.depth_m = f.depth_m;
     o.depth_sigma_m = std::sqrt(noise.depth_sigma_m * noise.depth_sigma_m + spread(2, 2));
     out.push_back(o);
@@ -116,6 +117,7 @@ TrackResult track_frame(const LandmarkMap& map, const std::vector<int>& local_la
   const TrackingConfig& config = map.config().tracking;
   TrackResult result;
   Se3 pose = prediction.prior.map_from_base;
+  const double smear_px = config.smear_s * prediction.turn_rate_rad_s * map.camera().fx();
   // Wide nets only when the narrow one comes up empty: wide nets catch wrong fish.
   const auto coarse = [&](double radius_px) {
     const auto visible = visible_landmarks(map, local_landmarks, pose);
@@ -128,7 +130,7 @@ TrackResult track_frame(const LandmarkMap& map, const std::vector<int>& local_la
     return result;
   }
   const auto solve = [&] {
-    const auto observations = observations_of(map, result.matches, features, pose);
+    const auto observations = observations_of(map, result.matches, features, pose, smear_px);
     result.solution =
         optimize_pose(observations, pose, prediction.prior, map.camera(), map.base_from_camera());
     pose = result.solution.map_from_base;

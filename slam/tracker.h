@@ -31,10 +31,12 @@ std::vector<FeatureMatch> match_by_projection(const LandmarkMap& map,
                                               const std::vector<VisibleLandmark>& visible,
                                               const FeatureSet& features, double radius_px);
 
-/// What the optimiser needs of each match: place and noise, the landmark's own uncertainty in it.
+/// What the optimiser needs of each match: place and noise, with the landmark's own uncertainty
+/// and `smear_px`, what turning does to the image, in it.
 std::vector<PointObservation> observations_of(const LandmarkMap& map,
                                               const std::vector<FeatureMatch>& matches,
-                                              const FeatureSet& features, const Se3& map_from_base);
+                                              const FeatureSet& features, const Se3& map_from_base,
+                                              double smear_px);
 
 enum class TrackStatus { kTracked, kTooFewMatches, kImplausible };
 
