@@ -21,12 +21,15 @@ using test::put_bytes;
 using test::random_map;
 using test::ScratchFolder;
 
-class RandomMaps : public testing::TestWithParam<std::uint64_t> {
- protected:
-  const ScratchFolder folder_;
-  const std::filesystem::path path_ = folder_ / "a.rovigo";
-  const SavedMap map_ = random_map(GetParam());
-};
+/// Runs `check(seed, folder, path, map)` on random maps; failures name the seed.
+template <class Check>
+void on_random_maps(Check check) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const ScratchFolder folder;
+    check(seed, folder, folder / "a.rovigo", random_map(seed));
+  }
+}
 
 /// Refused with a clear error, or the very map that was saved: never something else.
 void expect_refused_or_same(const std::filesystem::path& path, const SavedMap& map,
@@ -51,54 +54,64 @@ void expect_recovery_is_sound(const std::filesystem::path& path, const SavedMap&
   }
 }
 
-TEST_P(RandomMaps, RoundTrip) {
-  save_map(map_, path_);
-  EXPECT_EQ(difference(load_map(path_), map_), "");
+TEST(RandomMaps, RoundTrip) {
+  on_random_maps([](std::uint64_t, const ScratchFolder&, const std::filesystem::path& file,
+                    const SavedMap& map) {
+    save_map(map, file);
+    EXPECT_EQ(difference(load_map(file), map), "");
+  });
 }
 
-TEST_P(RandomMaps, CutFilesAreRefused) {
-  save_map(map_, path_);
-  const std::string whole = bytes_of(path_);
-  std::mt19937_64 rng(GetParam());
-  for (int i = 0; i < 15; ++i) {
-    put_bytes(path_, whole.substr(0, rng() % whole.size()));
-    EXPECT_THROW(load_map(path_), InputError);
-    expect_recovery_is_sound(path_, map_, folder_);
-  }
+TEST(RandomMaps, CutFilesAreRefused) {
+  on_random_maps([](std::uint64_t seed, const ScratchFolder& folder,
+                    const std::filesystem::path& file, const SavedMap& map) {
+    save_map(map, file);
+    const std::string whole = bytes_of(file);
+    std::mt19937_64 rng(seed);
+    for (int i = 0; i < 15; ++i) {
+      put_bytes(file, whole.substr(0, rng() % whole.size()));
+      EXPECT_THROW(load_map(file), InputError);
+      expect_recovery_is_sound(file, map, folder);
+    }
+  });
 }
 
-TEST_P(RandomMaps, FlippedBitsAreFoundOrHarmless) {
-  save_map(map_, path_);
-  const std::string whole = bytes_of(path_);
-  std::mt19937_64 rng(GetParam());
-  for (int i = 0; i < 150; ++i) {
-    std::string damaged = whole;
-    // Half of them where the structure is: in the headers of pages.
-    std::size_t at = rng() % whole.size();
-    if (i % 2 == 0) at = std::min(at / 4096 * 4096 + rng() % 64, whole.size() - 1);
-    damaged[at] = static_cast<char>(damaged[at] ^ (1 << rng() % 8));
-    put_bytes(path_, damaged);
-    expect_refused_or_same(path_, map_, "bit flipped at byte " + std::to_string(at));
-    if (i % 10 == 0) expect_recovery_is_sound(path_, map_, folder_);
-  }
+TEST(RandomMaps, FlippedBitsAreFoundOrHarmless) {
+  on_random_maps([](std::uint64_t seed, const ScratchFolder& folder,
+                    const std::filesystem::path& file, const SavedMap& map) {
+    save_map(map, file);
+    const std::string whole = bytes_of(file);
+    std::mt19937_64 rng(seed);
+    for (int i = 0; i < 150; ++i) {
+      std::string damaged = whole;
+      // Half of them where the structure is: in the headers of pages.
+      std::size_t at = rng() % whole.size();
+      if (i % 2 == 0) at = std::min(at / 4096 * 4096 + rng() % 64, whole.size() - 1);
+      damaged[at] = static_cast<char>(damaged[at] ^ (1 << rng() % 8));
+      put_bytes(file, damaged);
+      expect_refused_or_same(file, map, "bit flipped at byte " + std::to_string(at));
+      if (i % 10 == 0) expect_recovery_is_sound(file, map, folder);
+    }
+  });
 }
 
-TEST_P(RandomMaps, OverwrittenStretchesAreFoundOrHarmless) {
-  save_map(map_, path_);
-  const std::string whole = bytes_of(path_);
-  std::mt19937_64 rng(GetParam() + 1000);
-  for (int i = 0; i < 40; ++i) {
-    std::string damaged = whole;
-    const std::size_t at = rng() % whole.size();
-    const std::size_t count = std::min<std::size_t>(rng() % 6000, whole.size() - at);
-    for (std::size_t k = 0; k < count; ++k) damaged[at + k] = static_cast<char>(rng());
-    put_bytes(path_, damaged);
-    expect_refused_or_same(path_, map_, "overwritten at byte " + std::to_string(at));
-    expect_recovery_is_sound(path_, map_, folder_);
-  }
+TEST(RandomMaps, OverwrittenStretchesAreFoundOrHarmless) {
+  on_random_maps([](std::uint64_t seed, const ScratchFolder& folder,
+                    const std::filesystem::path& file, const SavedMap& map) {
+    save_map(map, file);
+    const std::string whole = bytes_of(file);
+    std::mt19937_64 rng(seed + 1000);
+    for (int i = 0; i < 40; ++i) {
+      std::string damaged = whole;
+      const std::size_t at = rng() % whole.size();
+      const std::size_t count = std::min<std::size_t>(rng() % 6000, whole.size() - at);
+      for (std::size_t k = 0; k < count; ++k) damaged[at + k] = static_cast<char>(rng());
+      put_bytes(file, damaged);
+      expect_refused_or_same(file, map, "overwritten at byte " + std::to_string(at));
+      expect_recovery_is_sound(file, map, folder);
+    }
+  });
 }
-
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomMaps, testing::Range<std::uint64_t>(1, 13));
 
 TEST(KilledWriter, OldOrNewMapOpensWhole) {
   const ScratchFolder folder;
