@@ -42,6 +42,18 @@ SensorRig make_rig() {
   return rig;
 }
 
+const SimulatorOptions& checked(const SimulatorOptions& options) {
+  constexpr double kMaxRateHz = 1.0 / Simulator::kStepS;
+  if (!(options.camera_rate_hz > 0.0 && options.camera_rate_hz <= kMaxRateHz)) {
+    throw maps::InputError("camera_rate_hz = " + std::to_string(options.camera_rate_hz) +
+                           " is outside (0, " + std::to_string(static_cast<int>(kMaxRateHz)) + "]");
+  }
+  if (!maps::is_finite(options.world_from_base)) {
+    throw maps::InputError("the rover's start pose is not finite");
+  }
+  return options;
+}
+
 /// Tells at which physics steps a sensor of a given rate is due: the first step at or after each
 /// multiple of its period, so that stamps are exact.
 class Timer {
@@ -81,7 +93,7 @@ struct Simulator::Impl {
 
   Impl(const World& w, const SimulatorOptions& o)
       : world(w),
-        options(o),
+        options(checked(o)),
         rig(make_rig()),
         body(w.model(), o.robot, o.world_from_base),
         drive(o.scenario.motor, o.scenario.wheels, o.robot, derive_seed(o.seed, kSlipStream)),
@@ -97,18 +109,22 @@ struct Simulator::Impl {
     const SideDrive hold{0.0, options.scenario.motor.stall_torque_nm};
     for (int i = 0; i < kSettleSteps; ++i) {
       body.step(kStepS, hold, hold);
-      if (const std::string thing = body.touched(); !thing.empty()) refuse_start(thing);
+      if (const std::string thing = body.touched(); !thing.empty()) {
+        refuse_start("it would touch '" + thing + "'; choose a start that is clear of it");
+      }
+    }
+    if (body.state().world_from_base.translation().z() < -0.01) {
+      refuse_start("there is no floor; choose a start on one");
     }
     imu.reset_motion(body.state());
     update_truth();
     sense();
   }
 
-  [[noreturn]] void refuse_start(const std::string& thing) const {
+  [[noreturn]] void refuse_start(const std::string& why) const {
     const TPose2D& p = options.world_from_base;
     throw maps::InputError("the rover cannot be put down at (" + std::to_string(p.x) + ", " +
-                           std::to_string(p.y) + ") in world '" + world.name() +
-                           "': it would touch '" + thing + "'; choose a start that is clear of it");
+                           std::to_string(p.y) + ") in world '" + world.name() + "': " + why);
   }
 
   double time_s() const { return kFirstTimeS + static_cast<double>(step_index) * kStepS; }

@@ -41,7 +41,8 @@ class Simulator {
  public:
   static constexpr double kStepS = 1.0 / 240.0;
 
-  /// Throws InputError when the rover would stand in an obstacle.
+  /// Throws InputError when the rover would stand in an obstacle or on no floor, or when the camera
+  /// rate is outside (0, 240].
   Simulator(const World& world, const SimulatorOptions& options);
   ~Simulator();
 

@@ -141,6 +141,18 @@ TEST(Rover, AStartInsideAnObstacleIsRefusedAndTheObstacleNamed) {
   }
 }
 
+TEST(Rover, AStartWithoutAFloorOrWithoutNumbersIsRefused) {
+  SimulatorOptions beside = blind_options();
+  beside.world_from_base = {100.0, 0.0, 0.0};
+  EXPECT_THROW(Simulator(World(bare_floor()), beside), maps::InputError);
+  SimulatorOptions nowhere = blind_options();
+  nowhere.world_from_base = {std::nan(""), 0.0, 0.0};
+  EXPECT_THROW(Simulator(World(bare_floor()), nowhere), maps::InputError);
+  SimulatorOptions frozen = blind_options();
+  frozen.camera_rate_hz = 0.0;
+  EXPECT_THROW(Simulator(World(bare_floor()), frozen), maps::InputError);
+}
+
 TEST(Rover, NonFiniteCommandsAreTakenForZero) {
   Simulator simulator(World(bare_floor()), blind_options());
   drive(simulator, {std::nan(""), 0.0, 0.0}, 0.5);

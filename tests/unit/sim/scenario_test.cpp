@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -66,6 +67,15 @@ TEST(Scenario, TheDefaultFileNamesEveryKey) {
 
 TEST(Scenario, TheIdealFileIsTheIdealScenario) {
   EXPECT_EQ(values_of(load_scenario(kFolder + "ideal.yaml")), values_of(ideal_scenario()));
+}
+
+TEST(Scenario, EveryShippedFileLoadsAndIsNamedAsItsFile) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kFolder)) {
+    EXPECT_EQ(load_scenario(entry.path()).name, entry.path().stem().string());
+    ++count;
+  }
+  EXPECT_GE(count, 6);
 }
 
 TEST(Scenario, TheDefaultsLieInsideTheirOwnRanges) {
