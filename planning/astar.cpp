@@ -88,8 +88,10 @@ GridSearchResult GridSearch::find(const SearchGrid& grid, maps::Cell start, maps
     const double weight = soft ? weights.soft_cost : 0.0;
     for (std::size_t c = 0; c < 256; ++c) {
       const double price = 1.0 + weight * static_cast<double>(c) / maps::Costmap::kMaxSoft;
-      query.half_straight[c] = static_cast<std::uint32_t>(std::lround(scale.straight / 2 * price));
-      query.half_diagonal[c] = static_cast<std::uint32_t>(std::lround(scale.diagonal / 2 * price));
+      query.half_straight[c] =
+          static_cast<std::uint32_t>(std::lround(0.5 * scale.straight * price));
+      query.half_diagonal[c] =
+          static_cast<std::uint32_t>(std::lround(0.5 * scale.diagonal * price));
     }
     query.step_limit = 2 * query.half_diagonal[255] +
                        static_cast<std::uint32_t>(scale.diagonal * query.heuristic_weight) + 1;

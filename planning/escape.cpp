@@ -55,7 +55,8 @@ class EscapeSearch {
     const int reach = static_cast<int>(std::min(1e3, max_distance_m_ / g.resolution_m)) + 1;
     const int side = 2 * reach + 1;
     const auto local = [&](Cell c) {
-      return static_cast<std::size_t>((c.y - from.y + reach) * side + (c.x - from.x + reach));
+      return static_cast<std::size_t>(c.y - from.y + reach) * static_cast<std::size_t>(side) +
+             static_cast<std::size_t>(c.x - from.x + reach);
     };
     std::vector<double> cost(static_cast<std::size_t>(side) * static_cast<std::size_t>(side),
                              std::numeric_limits<double>::infinity());
