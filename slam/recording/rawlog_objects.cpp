@@ -342,7 +342,7 @@ CSerializable::Ptr read_rawlog_object(GzReadArchive& archive) {
     return object;
   } catch (const LeaveItToMrpt&) {
     archive.rewind();
-    return archive.ReadObject();
+    return read_with_mrpt(archive);
   }
 }
 

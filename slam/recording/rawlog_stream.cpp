@@ -96,7 +96,8 @@ void RawlogStream::take_object(const mrpt::serialization::CSerializable::Ptr& ob
   } else if (const auto actions = std::dynamic_pointer_cast<mrpt::obs::CActionCollection>(object)) {
     take_actions(*actions);
   } else if (const auto rawlog = std::dynamic_pointer_cast<mrpt::obs::CRawlog>(object)) {
-    for (const auto& entry : *rawlog) {
+    for (std::size_t i = 0; i < rawlog->size(); ++i) {
+      const auto entry = rawlog->getAsGeneric(i);
       if (entry && !std::dynamic_pointer_cast<mrpt::obs::CRawlog>(entry)) take_object(entry);
     }
   } else {

@@ -10,6 +10,7 @@
 #include "maps/atomic_file.h"
 #include "maps/error.h"
 #include "slam/recording/pose_numbers.h"
+#include "slam/recording/text_file.h"
 
 namespace rovigo::slam {
 namespace {
@@ -27,7 +28,7 @@ class YamlFile {
       root_ = YAML::Load(text);
     } catch (const YAML::Exception& error) {
       throw maps::InputError(name_ + ", line " + std::to_string(error.mark.line + 1) +
-                             ": not valid YAML (" + error.msg + ")");
+                             ": not valid YAML");
     }
     if (!root_.IsMap()) throw maps::InputError(name_ + ": keys and values are expected");
   }
@@ -126,7 +127,7 @@ mrpt::img::TCamera read_camera_info(const std::filesystem::path& path) {
     const auto model = file.get<std::string>(model_key, "a word");
     if (model != "plumb_bob" && model != "rational_polynomial" && model != "none" &&
         !model.empty()) {
-      file.fail(model_key, "plumb_bob or rational_polynomial, not '" + model.substr(0, 40) + "'");
+      file.fail(model_key, "plumb_bob or rational_polynomial, not " + shown_text(model));
     }
   }
   const std::string lower_k = file.has("k") ? "k" : "K";

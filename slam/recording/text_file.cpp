@@ -27,17 +27,14 @@ std::vector<std::string_view> cut_at_spaces(std::string_view line) {
   return fields;
 }
 
-/// A field as it is shown in a message: short, and without bytes that upset a terminal.
-std::string quoted(std::string_view field) {
+}  // namespace
+
+std::string shown_text(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   std::string shown = "'";
-  for (const char c : field.substr(0, kLongest)) {
-    shown += (c >= 0x20 && c < 0x7f) ? c : '?';
-  }
-  return shown + (field.size() > kLongest ? "...'" : "'");
+  for (const char c : text.substr(0, kLongest)) shown += (c >= 0x20 && c < 0x7f) ? c : '?';
+  return shown + (text.size() > kLongest ? "...'" : "'");
 }
-
-}  // namespace
 
 TextFile::TextFile(const std::filesystem::path& path)
     : name_(path.string()), text_(maps::read_file(path, kMaxTextBytes)) {
@@ -71,7 +68,7 @@ double TextFile::number(const TextLine& line, std::size_t index) const {
   const auto [rest, error] = std::from_chars(begin, end, value);
   if (error != std::errc() || rest != end || !std::isfinite(value)) {
     fail(line,
-         quoted(field) + " in column " + std::to_string(index + 1) + " is not a finite number");
+         shown_text(field) + " in column " + std::to_string(index + 1) + " is not a finite number");
   }
   return value;
 }
@@ -79,7 +76,7 @@ double TextFile::number(const TextLine& line, std::size_t index) const {
 double TextFile::time(const TextLine& line, std::size_t index) const {
   const double value = number(line, index);
   if (value < 0.0 || value > kMaxTime_s) {
-    fail(line, "the time " + quoted(line.fields[index]) + " is outside 0 .. 1e10 seconds");
+    fail(line, "the time " + shown_text(line.fields[index]) + " is outside 0 .. 1e10 seconds");
   }
   return value;
 }

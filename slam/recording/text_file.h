@@ -13,6 +13,10 @@ namespace rovigo::slam {
 /// Larger text files than this are refused: an hour of IMU at 100 Hz is 30 MB.
 inline constexpr std::size_t kMaxTextBytes = 512u << 20;
 
+/// Text from a file as it may stand in a message: in quotes, short, and without bytes that upset a
+/// terminal.
+std::string shown_text(std::string_view text);
+
 /// A line cut at white space; comments (`#`) and empty lines are not handed out.
 struct TextLine {
   int number = 0;  ///< from 1

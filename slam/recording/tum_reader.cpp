@@ -77,6 +77,9 @@ void TumReader::read_lists() {
   const fs::path associations = directory_ / "associations.txt";
   if (is_there(associations)) {
     frames_ = read_associations(associations);
+  } else if (!is_there(directory_ / "rgb.txt")) {
+    throw maps::InputError(directory_.string() +
+                           ": not a TUM directory; it has neither rgb.txt nor associations.txt");
   } else {
     const auto color = read_image_list(directory_ / "rgb.txt");
     const auto depth = read_image_list(directory_ / "depth.txt");
