@@ -183,7 +183,9 @@ void DeadReckoning::judge_slip(double wheel_turn_rate, double dt) {
   const double scale_sigma = std::sqrt(p_(kTurnScale, kTurnScale)) + 0.03;
   const double sigma = config_.wheel_turn_sigma_rad_s + scale_sigma * std::abs(wheel_turn_rate);
   slipping_ = std::abs(disagreement_rad_s_) > config_.slip_gate * sigma;
-  if (slipping_ || std::abs(wheel_turn_rate) < kMinTurnToCalibrate) return;
+  // A slip begins before the smoothed figure shows it, and must not pass for a wrong scale.
+  const bool doubtful = slipping_ || std::abs(apart) > 0.5 * config_.slip_gate * sigma;
+  if (doubtful || std::abs(wheel_turn_rate) < kMinTurnToCalibrate) return;
   // Only the scale of the wheels learns from this: scrubbing wheels must not teach the gyro.
   const double h = wheel_turn_rate;
   const double variance = std::pow(config_.wheel_turn_sigma_rad_s + 0.05 * std::abs(h), 2);
