@@ -69,10 +69,7 @@ planning::PlanRequest plan_request(const RouteRequest& route, const maps::SavedM
   request.goal = goal.pose;
   request.goal_heading_given = goal.has_heading;
   for (const auto& via : route.via) request.via.push_back(parse_point("--via", via));
-  if (route.order == "shortest" && request.via.size() > 1) {
-    throw maps::InputError(
-        "--order shortest is not available in this version; list the stops in the order to visit");
-  }
+  if (route.order == "shortest") request.via_order = planning::ViaOrder::kShortest;
   return request;
 }
 
@@ -112,8 +109,9 @@ nlohmann::ordered_json plan_json(const TimedPlan& plan) {
 
 std::string plan_message(const planning::PlanResult& plan) {
   if (plan.status != planning::PlanStatus::kOk) return plan.message;
+  const std::string note = plan.message.empty() ? "" : "; " + plan.message;
   return "planned " + with_unit(plan.path_length_m, 2, "m") + ", " +
-         with_unit(plan.trajectory.duration_s(), 1, "s") + " to drive";
+         with_unit(plan.trajectory.duration_s(), 1, "s") + " to drive" + note;
 }
 
 std::vector<Row> plan_rows(const TimedPlan& plan) {

@@ -67,8 +67,8 @@ class Planner {
   Planner& operator=(Planner&&) noexcept;
 
   /// Nearer to an occupied cell's edge than inflation.robot_radius_m never happens on the result,
-  /// except on an escape segment, which never touches occupied cells and never gets nearer to them
-  /// than the start was.
+  /// except on an escape segment, which never touches occupied cells; where a straight way out
+  /// exists it never gets nearer to them than the start was, else by less than a cell.
   PlanResult plan(const PlanRequest& request) const;
 
   const maps::Costmap& costmap() const;

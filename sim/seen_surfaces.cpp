@@ -1,5 +1,6 @@
 // Which of a world's surfaces a camera has looked at: for scoring only.
 
+#include <cmath>
 #include <vector>
 
 #include "sim/pixel_rays.h"
@@ -43,8 +44,9 @@ SeenSurfaces::~SeenSurfaces() = default;
 
 void SeenSurfaces::add_view(const mrpt::poses::CPose3D& world_from_camera,
                             const mrpt::img::TCamera& camera) {
-  constexpr int kStride = 4;       // pixels
-  constexpr float kRangeM = 6.0F;  // the camera's default range
+  constexpr int kStride = 4;  // pixels
+  const CameraNoise limits;   // too near, too far or too grazing gives no return: not seen
+  const double min_cosine = std::cos(limits.max_incidence_deg * maps::kPi / 180.0);
   const PixelRays rays = pixel_rays(world_from_camera, camera);
   const int columns = (static_cast<int>(camera.ncols) + kStride - 1) / kStride;
   std::vector<std::uint32_t> quad(static_cast<std::size_t>(columns));
@@ -53,13 +55,18 @@ void SeenSurfaces::add_view(const mrpt::poses::CPose3D& world_from_camera,
     const Eigen::Vector3d first = rays.d0 + y * rays.dy;
     const Eigen::Vector3d step = kStride * rays.dx;
     impl_->scene.cast_row(rays.origin.cast<float>(), first.cast<float>(), step.cast<float>(),
-                          columns, kRangeM, quad.data(), depth.data());
+                          columns, static_cast<float>(limits.max_range_m), quad.data(),
+                          depth.data());
     for (int i = 0; i < columns; ++i) {
       const auto k = static_cast<std::size_t>(i);
       if (quad[k] == RayScene::kMiss) continue;
       const auto& q = impl_->surfaces.quads[quad[k]];
-      impl_->mark(rays.origin + static_cast<double>(depth[k]) * (first + i * step),
-                  impl_->surfaces.faces[static_cast<std::size_t>(q.face)].normal);
+      const Eigen::Vector3d& normal =
+          impl_->surfaces.faces[static_cast<std::size_t>(q.face)].normal;
+      const Eigen::Vector3d ray = first + i * step;
+      if (std::abs(normal.dot(ray.normalized())) < min_cosine) continue;
+      if (depth[k] < static_cast<float>(limits.min_range_m)) continue;
+      impl_->mark(rays.origin + static_cast<double>(depth[k]) * ray, normal);
     }
   }
 }

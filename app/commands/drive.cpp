@@ -168,6 +168,7 @@ int run_drive(const DriveOptions& options) {
     report.succeeded = outcome.code == 0;
     report.grid = map.grid;
     report.layers = plan_layers(request, plan.result);
+    report.layers.costmap = planner.costmap();
     report.planned = plan.result.trajectory;
     report.log = log;
     report.metrics = metrics;

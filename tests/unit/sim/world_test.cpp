@@ -207,6 +207,20 @@ TEST(SeenSurfaces, KeepOnlyTheFacesACameraLookedAt) {
   EXPECT_EQ(grid.at(grid.geometry.cell_at({2.24, 0.01})), maps::OccupancyGrid::kUnknown);
 }
 
+TEST(SeenSurfaces, LeaveOutWhatIsTooGrazingForAReturn) {
+  WorldModel model = bare_floor();
+  model.solids.push_back(box_at(2.5, -0.35, 0.0, {5.0, 0.1, 1.0}));  // a wall along the view
+  const World world(model);
+  Simulator simulator(world, blind_options());
+  SeenSurfaces seen(world, 0.05, 0.05, 0.50);
+  const auto& rig = simulator.rig();
+  seen.add_view(simulator.truth().world_from_base + rig.base_from_camera, rig.camera);
+  const auto grid = seen.grid();
+  // The wall's face is 0.3 m beside the camera: 80 degrees of incidence are reached 1.7 m ahead.
+  EXPECT_EQ(grid.at(grid.geometry.cell_at({1.2, -0.32})), maps::OccupancyGrid::kOccupied);
+  EXPECT_EQ(grid.at(grid.geometry.cell_at({2.5, -0.32})), maps::OccupancyGrid::kUnknown);
+}
+
 /// Cells the rover's centre can reach from the start: those farther than `radius` from obstacles.
 std::vector<bool> reachable(const maps::OccupancyGrid& grid, const TPoint2D& start, double radius) {
   const auto& g = grid.geometry;
