@@ -35,7 +35,7 @@ class Projection {
 /// Where the corners between the pixels look: rays at depth one, free of distortion.
 std::vector<cv::Point2f> corner_rays(const mrpt::img::TCamera& camera) {
   std::vector<cv::Point2f> corners;
-  corners.reserve((camera.ncols + 1) * (camera.nrows + 1));
+  corners.reserve((std::size_t{camera.ncols} + 1) * (std::size_t{camera.nrows} + 1));
   for (std::uint32_t row = 0; row <= camera.nrows; ++row) {
     for (std::uint32_t column = 0; column <= camera.ncols; ++column) {
       corners.emplace_back(static_cast<float>(column) - 0.5F, static_cast<float>(row) - 0.5F);

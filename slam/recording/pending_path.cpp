@@ -53,7 +53,7 @@ void sync_content(const fs::path& path) {
 
 }  // namespace
 
-PendingPath::PendingPath(fs::path target)
+PendingPath::PendingPath(const fs::path& target)
     : target_(without_trailing_slash(target)), temporary_(hidden_sibling(target_, ".part")) {
   std::error_code error;
   if (target_.filename().empty() || !fs::is_directory(folder_of(target_), error)) {

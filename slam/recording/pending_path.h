@@ -9,7 +9,7 @@ namespace rovigo::slam {
 class PendingPath {
  public:
   /// Throws InputError when the folder that shall hold `target` does not exist.
-  explicit PendingPath(std::filesystem::path target);
+  explicit PendingPath(const std::filesystem::path& target);
   ~PendingPath();
   PendingPath(const PendingPath&) = delete;
   PendingPath& operator=(const PendingPath&) = delete;

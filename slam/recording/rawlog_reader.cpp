@@ -111,7 +111,7 @@ void RawlogReader::read_ahead(const OpenOptions& options) {
     }
   }
   if (!has_frame) {
-    const std::string why = stream.first_frame_problem();
+    const std::string& why = stream.first_frame_problem();
     throw maps::InputError(path_.string() +
                            (why.empty()
                                 ? ": it holds no RGB-D frames, so there is nothing to map"

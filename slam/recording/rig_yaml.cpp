@@ -46,7 +46,7 @@ class YamlFile {
     if (node.IsMap()) node = node["data"];
     const std::string what = least == most ? "a list of " + std::to_string(least) + " numbers"
                                            : "a list of up to " + std::to_string(most) + " numbers";
-    const auto values = convert<std::vector<double>>(node, key, what);
+    auto values = convert<std::vector<double>>(node, key, what);
     bool fits = values.size() >= least && values.size() <= most;
     for (const double value : values) fits = fits && std::isfinite(value);
     if (!fits) fail(key, what);
@@ -136,7 +136,7 @@ mrpt::img::TCamera read_camera_info(const std::filesystem::path& path) {
   std::vector<double> distortion;
   if (file.has(distortion_key)) distortion = file.numbers(distortion_key, 0, kMaxCoefficients);
   const auto matrix = file.numbers(is_message ? lower_k : "camera_matrix", 9, 9);
-  const mrpt::img::TCamera camera = make_camera(width, height, matrix, distortion);
+  mrpt::img::TCamera camera = make_camera(width, height, matrix, distortion);
   if (const std::string problem = camera_problem(camera); !problem.empty()) {
     throw maps::InputError(path.string() + ": " + problem);
   }

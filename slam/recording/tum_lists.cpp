@@ -12,7 +12,7 @@ namespace rovigo::slam {
 namespace {
 
 std::filesystem::path image_path(const TextFile& file, const TextLine& line, std::size_t index) {
-  const std::filesystem::path path(line.fields.at(index));
+  std::filesystem::path path(line.fields.at(index));
   const bool leaves = std::any_of(path.begin(), path.end(),
                                   [](const std::filesystem::path& part) { return part == ".."; });
   if (path.is_absolute() || leaves) {
