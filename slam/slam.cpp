@@ -9,9 +9,7 @@
 
 #include "slam/bundle_adjustment.h"
 #include "slam/camera_frame.h"
-#include "slam/depth_scan.h"
 #include "slam/features.h"
-#include "slam/grid_mapper.h"
 #include "slam/keyframe_codec.h"
 #include "slam/landmark_map.h"
 #include "slam/local_map.h"
@@ -19,6 +17,7 @@
 #include "slam/map_storage.h"
 #include "slam/motion_model.h"
 #include "slam/place_match.h"
+#include "slam/surroundings.h"
 #include "slam/tracker.h"
 #include "slam/trajectory_history.h"
 
@@ -28,16 +27,11 @@ namespace {
 
 constexpr double kDeadReckonedEveryS = 0.08;  // poses where frames are missing: above 10 Hz
 constexpr int kMinFirstFeatures = 50;         // with depth, to start a map on
+constexpr int kSearchEverywhereEvery = 5;     // frames without a match
+constexpr double kFoundSigmaM = 0.05;         // of a pose found by recognising the place
+constexpr double kFoundSigmaRad = 0.03;
+constexpr double kSurprisingM = 0.15;
 constexpr int kFinalIterations = 8;
-constexpr double kScanSpacing = 0.15;  // in units of the keyframe spacing
-constexpr double kBodyRadiusM = 0.20;  // half the rover's width: where it was is free
-
-/// A scan held relative to a keyframe, so that the grid follows the optimised poses.
-struct AnchoredScan {
-  int keyframe = 0;
-  Se3 keyframe_from_base;
-  DepthScan scan;
-};
 
 }  // namespace
 
@@ -51,20 +45,18 @@ struct Slam::Impl {
         map(settings, camera, base_from_camera),
         motion(settings, r),
         loops(settings, motion.planar()),
-        scanner(camera, settings.grid, settings.depth) {}
+        surroundings(settings, camera, base_from_camera, motion.planar()) {}
 
   void begin(double time_s);
   void dead_reckon(double time_s);
   PoseEstimate on_frame(const mrpt::obs::CObservation3DRangeScan& scan);
-  TrackResult track(const FeatureSet& features, const MotionPrediction& prediction);
-  void recover(const FeatureSet& features, TrackResult& result);
+  TrackResult track(double time_s, const FeatureSet& features, const MotionPrediction& prediction);
+  void recover(double time_s, const FeatureSet& features, TrackResult& result);
   void remember_tracked(const TrackResult& result);
   void insert_keyframe(const CameraFrame& frame, FeatureSet features, const TrackResult& result,
                        const Se3& pose);
   void look_for_loop(double time_s);
   void adjust_everything();
-  void scan_surroundings(const CameraFrame& frame, const Se3& pose);
-  maps::OccupancyGrid render() const;
   void remember_pose(double time_s, const Se3& pose, bool is_camera_frame);
   PoseEstimate estimate(double time_s, const Se3& pose, bool tracked);
 
@@ -77,13 +69,12 @@ struct Slam::Impl {
   LoopCloser loops;
   std::vector<PoseGraphEdge> edges;
   TrajectoryHistory history;
-  DepthScanner scanner;
-  std::vector<AnchoredScan> scans;
-  Se3 last_scan_pose;
+  Surroundings surroundings;
   LocalMap local;
   std::vector<int> tracked_landmarks;
   SlamSummary counters;
   bool begun = false;
+  int misses = 0;  ///< frames in a row that matched nothing
 };
 
 void Slam::Impl::begin(double time_s) {
@@ -103,52 +94,39 @@ void Slam::Impl::remember_pose(double time_s, const Se3& pose, bool is_camera_fr
   history.add(time_s, k, relative, is_camera_frame);
 }
 
-/// Keeps a flat scan of what the depth camera sees wherever the view has changed a little.
-void Slam::Impl::scan_surroundings(const CameraFrame& frame, const Se3& pose) {
-  if (!motion.planar() || frame.depth.empty() || local.reference_keyframe < 0) return;
-  if (!scans.empty() && keyframe_spacing(last_scan_pose, pose, config.tracking) < kScanSpacing) {
-    return;
-  }
-  last_scan_pose = pose;
-  const Se3 keyframe_from_base =
-      map.keyframe(local.reference_keyframe).map_from_base.inverse() * pose;
-  scans.push_back({local.reference_keyframe, keyframe_from_base,
-                   scanner.scan(frame.depth, frame.depth_unit_m, base_from_camera)});
-}
-
-maps::OccupancyGrid Slam::Impl::render() const {
-  GridRequest request;
-  for (const AnchoredScan& s : scans) {
-    const Se3 pose = map.keyframe(s.keyframe).map_from_base * s.keyframe_from_base;
-    request.scans.push_back({to_planar(pose), &s.scan});
-  }
-  if (motion.planar()) {
-    for (const maps::StoredPose& p : history.poses(map)) {
-      request.driven.push_back(to_planar(from_mrpt(p.map_from_base)));
-    }
-    request.driven_radius_m = kBodyRadiusM;
-  }
-  return render_grid(request, config.grid);
-}
-
-TrackResult Slam::Impl::track(const FeatureSet& features, const MotionPrediction& prediction) {
+TrackResult Slam::Impl::track(double time_s, const FeatureSet& features,
+                              const MotionPrediction& prediction) {
   if (map.keyframes().empty()) return {};
   local = select_local_map(map, tracked_landmarks, prediction.prior.map_from_base);
   TrackResult result = track_frame(map, local.landmarks, features, prediction);
-  if (result.status != TrackStatus::kTracked) recover(features, result);
+  if (result.status != TrackStatus::kTracked) recover(time_s, features, result);
+  if (result.status == TrackStatus::kTracked) misses = 0;
   return result;
 }
 
-/// Without a usable prediction: the last known surroundings, by appearance.
-void Slam::Impl::recover(const FeatureSet& features, TrackResult& result) {
-  const PlaceMatch found =
-      match_place(map, local.landmarks, local.landmarks, features, motion.planar(),
-                  {.min_inliers = 2 * config.tracking.min_inliers,
-                   .seed = static_cast<std::uint64_t>(counters.camera_frames)});
+/// Without a usable prediction: the last known surroundings by appearance, then the whole map.
+void Slam::Impl::recover(double time_s, const FeatureSet& features, TrackResult& result) {
+  ++misses;
+  const auto seed = static_cast<std::uint64_t>(counters.camera_frames);
+  PlaceMatch found = match_place(map, local.landmarks, local.landmarks, features, motion.planar(),
+                                 {.min_inliers = 2 * config.tracking.min_inliers, .seed = seed});
+  if (!found.accepted && misses % kSearchEverywhereEvery == 0) {
+    found = loops.relocalizer()
+                .find(map, features, motion.planar(), std::nullopt, {},
+                      {.min_inliers = config.localizer.relocalization_inliers, .seed = seed})
+                .match;
+  }
   if (!found.accepted) return;
   result.status = TrackStatus::kTracked;
   result.solution = found.solution;
   result.matches = found.matches;
+  // Far from what was believed, the prediction was worth nothing: carried, or lost for long.
+  const MotionPrediction believed = motion.predict(time_s);
+  const Se3& seen = found.solution.map_from_base;
+  const double apart = (believed.prior.map_from_base.translation - seen.translation).norm();
+  if (apart > kSurprisingM + 4.0 * believed.sigma_position_m) {
+    motion.place(time_s, seen, kFoundSigmaM, kFoundSigmaRad);
+  }
 }
 
 void Slam::Impl::remember_tracked(const TrackResult& result) {
@@ -222,7 +200,7 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
   if (!frame.gray.empty())
     features = extract_features(frame, camera, config.features, config.depth);
 
-  const TrackResult result = track(features, prediction);
+  const TrackResult result = track(frame.time_s, features, prediction);
   const bool tracked = result.status == TrackStatus::kTracked;
   Se3 pose = prediction.prior.map_from_base;
   if (tracked) {
@@ -240,7 +218,7 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
     pose = map.keyframe(local.reference_keyframe).map_from_base;  // a loop may have moved it
   }
   remember_pose(frame.time_s, pose, true);
-  scan_surroundings(frame, pose);
+  surroundings.look(frame, map, local.reference_keyframe, pose);
   ++counters.camera_frames;
   counters.tracked_frames += tracked || first;
   return estimate(frame.time_s, pose, tracked || first);
@@ -276,7 +254,7 @@ maps::SavedMap Slam::finish() {
   out.keyframes = store_keyframes(s.map);
   out.edges = store_edges(s.edges);
   out.trajectory = s.history.poses(s.map);
-  out.grid = s.render();
+  out.grid = s.surroundings.render(s.map, s.history);
   return out;
 }
 
