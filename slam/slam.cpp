@@ -25,7 +25,9 @@ namespace rovigo::slam {
 
 namespace {
 
-constexpr double kDeadReckonedEveryS = 0.08;  // poses where frames are missing: above 10 Hz
+// Between frames the trajectory holds dead-reckoned poses, so that no moment is farther than 0.02 s
+// from one at any frame rate the wheels outpace.
+constexpr double kDeadReckonedEveryS = 0.02;
 constexpr int kMinFirstFeatures = 50;         // with depth, to start a map on
 constexpr int kSearchEverywhereEvery = 5;     // frames without a match
 constexpr double kFoundSigmaM = 0.05;         // of a pose found by recognising the place

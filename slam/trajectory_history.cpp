@@ -4,6 +4,12 @@ namespace rovigo::slam {
 
 void TrajectoryHistory::add(double time_s, int keyframe, const Se3& keyframe_from_base,
                             bool is_camera_frame) {
+  // A look at the world replaces what was dead-reckoned for the same moment.
+  constexpr double kSameMomentS = 0.01;
+  if (is_camera_frame && !entries_.empty() && !entries_.back().is_camera_frame &&
+      time_s - entries_.back().time_s < kSameMomentS) {
+    entries_.pop_back();
+  }
   entries_.push_back({time_s, keyframe, keyframe_from_base, is_camera_frame});
 }
 
