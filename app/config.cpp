@@ -10,6 +10,7 @@
 
 #include "app/text.h"
 #include "maps/error.h"
+#include "maps/nearest_word.h"
 
 namespace rovigo::app {
 
@@ -216,7 +217,7 @@ RovigoConfig load_config(const std::optional<std::filesystem::path>& file,
   for (const auto& [key, assignment] : written) {
     if (assignment.used) continue;
     problems.push_back(assignment.where + ": unknown setting \"" + key + "\"; did you mean \"" +
-                       nearest_word(key, assigner.keys()) + "\"?");
+                       maps::nearest_word(key, assigner.keys()) + "\"?");
   }
   if (!problems.empty()) throw InputError(join(problems, "; "));
   config.inflation.robot_radius_m = config.robot.robot_radius_m;  // one setting, the robot's

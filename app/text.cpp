@@ -1,9 +1,7 @@
 #include "app/text.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <numeric>
 
 #include "maps/error.h"
 
@@ -44,34 +42,6 @@ TPoint2D parse_point(const std::string& option, const std::string& text) {
                            ": must be X,Y in metres; a heading has no use here");
   }
   return maps::position_of(parsed.pose);
-}
-
-namespace {
-
-/// Levenshtein distance, one row at a time.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row.back();
-}
-
-}  // namespace
-
-std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates) {
-  const auto nearest =
-      std::min_element(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {
-        return edit_distance(word, a) < edit_distance(word, b);
-      });
-  return nearest == candidates.end() ? std::string{} : *nearest;
 }
 
 std::string join(const std::vector<std::string>& parts, const std::string& separator) {

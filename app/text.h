@@ -1,5 +1,5 @@
 #pragma once
-// Small text helpers of the command line: strict numbers, points, suggestions.
+// Small text helpers of the command line: strict numbers, points, lists.
 
 #include <optional>
 #include <string>
@@ -20,9 +20,6 @@ struct PoseArgument {
 /// Throws InputError naming `option`, what was written and what is expected.
 PoseArgument parse_pose(const std::string& option, const std::string& text);
 TPoint2D parse_point(const std::string& option, const std::string& text);
-
-/// The candidate with the smallest edit distance to `word`; empty when there are none.
-std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates);
 
 std::string join(const std::vector<std::string>& parts, const std::string& separator);
 std::vector<std::string> split(const std::string& text, char separator);

@@ -6,26 +6,12 @@
 #include <sstream>
 #include <system_error>
 
+#include "maps/nearest_word.h"
+
 namespace rovigo::sim {
 namespace {
 
 constexpr std::uintmax_t kMaxBytes = 1U << 20U;
-
-/// Levenshtein distance.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row[b.size()];
-}
 
 std::string printable(const std::string& text) {
   constexpr std::size_t kLongest = 40;
@@ -89,13 +75,9 @@ void require_known_keys(const std::string& file, const YAML::Node& map,
     const std::string& key = entry.first.Scalar();
     if (!seen.insert(key).second) fail_at(file, entry.first, "\"" + key + "\" appears twice");
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    const auto nearest =
-        std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
-          return edit_distance(key.substr(0, 64), a) < edit_distance(key.substr(0, 64), b);
-        });
-    fail_at(
-        file, entry.first,
-        "unknown key \"" + printable(key) + "\"; the nearest valid key is \"" + *nearest + "\"");
+    fail_at(file, entry.first,
+            "unknown key \"" + printable(key) + "\"; the nearest valid key is \"" +
+                maps::nearest_word(key, known) + "\"");
   }
 }
 

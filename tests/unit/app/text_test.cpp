@@ -26,10 +26,5 @@ TEST(Text, APoseIsTwoOrThreeNumbers) {
   EXPECT_THROW(parse_point("--via", "1,2,3"), maps::InputError);
 }
 
-TEST(Text, TheNearestWordHasTheFewestEdits) {
-  EXPECT_EQ(nearest_word("max_sped", {"min_speed", "max_speed", "gain"}), "max_speed");
-  EXPECT_EQ(nearest_word("x", {}), "");
-}
-
 }  // namespace
 }  // namespace rovigo::app
