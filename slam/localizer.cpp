@@ -141,7 +141,9 @@ PoseEstimate Localizer::Impl::estimate(double time_s) {
   e.map_from_base = to_mrpt(now.prior.map_from_base);
   e.sigma_position_m = now.sigma_position_m;
   e.sigma_heading_rad = now.sigma_heading_rad;
-  const bool fresh = time_s - last_fix_s <= config.localizer.degraded_after_s;
+  // A frame that shows plenty and fits nothing says at once that something is wrong.
+  const bool fresh =
+      misses_with_plenty == 0 && time_s - last_fix_s <= config.localizer.degraded_after_s;
   const double support = 1.0 - std::exp(-inliers / 25.0);
   if (state == State::kTracking) {
     e.health = fresh ? Health::kOk : Health::kDegraded;
