@@ -1,5 +1,7 @@
 #include "app/resources.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <charconv>
 #include <vector>
@@ -59,6 +61,22 @@ sim::Route open_route(const std::string& name_or_path) {
 
 sim::Scenario open_scenario(const std::string& name_or_path) {
   return sim::load_scenario(find("scenario", "scenarios", ".yaml", name_or_path));
+}
+
+void require_writable(const std::filesystem::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) {
+    throw maps::InputError(file.string() + ": there is no folder " + folder.string() +
+                           " to write into; create it first");
+  }
+  if (fs::is_directory(file, ignored)) {
+    throw maps::InputError(file.string() + ": is a folder; name a file");
+  }
+  if (access(folder.c_str(), W_OK) != 0) {
+    throw maps::InputError(file.string() + ": the folder " + folder.string() +
+                           " may not be written to; choose another or change its permissions");
+  }
 }
 
 }  // namespace rovigo::app

@@ -1,5 +1,5 @@
 #pragma once
-// Worlds, routes and scenarios by name or by path.
+// Worlds, routes and scenarios by name or by path; outputs checked before the work begins.
 
 #include <cstdint>
 #include <filesystem>
@@ -18,5 +18,9 @@ sim::World open_world(const std::string& name_or_path);
 sim::Route open_route(const std::string& name_or_path);
 /// A name in sim/scenarios, or a path to a YAML file.
 sim::Scenario open_scenario(const std::string& name_or_path);
+
+/// Throws InputError when a file could not be written here: long work must not end in "no such
+/// folder". A folder that does not exist yet counts as unwritable.
+void require_writable(const std::filesystem::path& file);
 
 }  // namespace rovigo::app

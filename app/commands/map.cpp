@@ -10,6 +10,7 @@
 #include "app/commands/options.h"
 #include "app/config.h"
 #include "app/console.h"
+#include "app/resources.h"
 #include "maps/error.h"
 #include "maps/map_file.h"
 #include "slam/localizer.h"
@@ -104,6 +105,8 @@ std::string percent(double share) { return with_unit(100.0 * share, 1, "%"); }
 int run_map(const MapOptions& options) {
   const Console console(options.json);
   const RovigoConfig config = load_config(options.config, options.set);
+  require_writable(options.output);
+  if (options.trajectory) require_writable(*options.trajectory);
   const auto reader = slam::open_recording(options.recording, {.camera_info = options.camera_info});
 
   slam::Slam slam(config.slam, reader->info().rig);
@@ -161,6 +164,7 @@ int run_map(const MapOptions& options) {
 int run_localize(const LocalizeOptions& options) {
   const Console console(options.json);
   const RovigoConfig config = load_config(options.config, options.set);
+  if (options.trajectory) require_writable(*options.trajectory);
   const maps::SavedMap map = maps::load_map(options.map);
   const auto reader = slam::open_recording(options.recording, {.camera_info = options.camera_info});
   slam::Localizer localizer(config.slam, reader->info().rig, map, std::nullopt);

@@ -58,6 +58,7 @@ slam::RecordingInfo recording_info(const RecordOptions& options, const sim::Simu
 int run_record(const RecordOptions& options) {
   const Console console(options.json);
   const RovigoConfig config = load_config(options.config, options.set);
+  require_writable(options.output);
   const sim::World world = open_world(options.world);
   const sim::Route route = open_route(options.route);
   const planning::PlanResult plan = plan_route(world, route, config);

@@ -213,4 +213,18 @@ TEST(CommandLine, AFailedSaveLeavesTheOldMapWhole) {
   EXPECT_EQ(rovigo::test::read_text(folder / "room.rovigo"), before);
 }
 
+TEST(CommandLine, AnOutputThatCannotBeWrittenIsRefusedBeforeTheWorkBegins) {
+  const TemporaryFolder folder;
+  write_text(folder / "recording.rawlog", "never read");
+  for (const auto& words : std::vector<std::vector<std::string>>{
+           {"map", folder / "recording.rawlog", "-o", folder / "missing/map.rovigo"},
+           {"map", folder / "recording.rawlog", "-o", folder.path().string()},
+           {"record", "--world", "lab", "--route", "lab_short", "-o",
+            folder / "missing/r.rawlog"}}) {
+    const ProcessResult r = run_rovigo(words);
+    expect_one_sentence(r, 2);
+    EXPECT_THAT(r.err, HasSubstr("folder"));
+  }
+}
+
 }  // namespace
