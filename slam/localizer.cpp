@@ -23,6 +23,9 @@ constexpr double kPriorGates = 4.0;   // sigmas around a given pose that are sea
 constexpr int kLostAfterFrames = 12;  // that show plenty and match nothing: carried elsewhere
 constexpr int kPlenty = 150;          // features; fewer and the camera may be covered or dark
 constexpr int kForgetFixAfter = 3;    // unconfirmed frames
+// A view this near a mapped one has to match it; elsewhere the map knows nothing to contradict.
+constexpr double kSameViewM = 0.7;
+constexpr double kSameViewRad = 0.45;
 
 }  // namespace
 
@@ -46,6 +49,7 @@ struct Localizer::Impl {
   void search(double time_s, const FeatureSet& features);
   void follow(double time_s, const FeatureSet& features);
   void lose();
+  bool map_knows_view(const Se3& map_from_base) const;
   PoseEstimate estimate(double time_s);
 
   SlamConfig config;
@@ -61,9 +65,9 @@ struct Localizer::Impl {
   std::vector<int> tracked;
   int frames = 0;
   int confirmations = 0;
-  int misses = 0;  ///< frames in a row that matched nothing
-  int misses_with_plenty = 0;
-  int inliers = 0;  ///< of the last match
+  int misses = 0;              ///< frames in a row that matched nothing
+  int misses_with_plenty = 0;  ///< of them, those where the map should have matched
+  int inliers = 0;             ///< of the last match
   double last_fix_s = -1e9;
 };
 
@@ -79,6 +83,16 @@ void Localizer::Impl::lose() {
   state = State::kSearching;
   confirmations = 0;
   tracked.clear();
+}
+
+/// Whether somebody looked this way from here when the map was made.
+bool Localizer::Impl::map_knows_view(const Se3& map_from_base) const {
+  const TPose2D here = to_planar(map_from_base);
+  return std::any_of(map.keyframes().begin(), map.keyframes().end(), [&](const Keyframe& k) {
+    const TPose2D there = to_planar(k.map_from_base);
+    return maps::distance(maps::position_of(here), maps::position_of(there)) < kSameViewM &&
+           std::abs(maps::wrap_angle(here.phi - there.phi)) < kSameViewRad;
+  });
 }
 
 void Localizer::Impl::search(double time_s, const FeatureSet& features) {
@@ -116,7 +130,10 @@ void Localizer::Impl::follow(double time_s, const FeatureSet& features) {
   }
   motion.miss(time_s);
   ++misses;
-  if (static_cast<int>(features.size()) >= kPlenty) ++misses_with_plenty;
+  if (static_cast<int>(features.size()) >= kPlenty &&
+      map_knows_view(prediction.prior.map_from_base)) {
+    ++misses_with_plenty;
+  }
   const bool unconfirmed = state == State::kConfirming && misses >= kForgetFixAfter;
   const bool carried_off = misses_with_plenty >= kLostAfterFrames;
   if (unconfirmed || carried_off || prediction.sigma_position_m > config.localizer.lost_sigma_m) {
