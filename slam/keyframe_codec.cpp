@@ -114,6 +114,7 @@ std::vector<StoredFeature> decode_features(const maps::Blob& blob) {
 maps::Blob encode_color(const cv::Mat& color) {
   maps::Blob out;
   if (!color.empty()) cv::imencode(".jpg", color, out, {cv::IMWRITE_JPEG_QUALITY, 85});
+  out.shrink_to_fit();  // encoders reserve for the worst case; hundreds of keyframes are kept
   return out;
 }
 
@@ -123,6 +124,7 @@ maps::Blob encode_depth(const CameraFrame& frame) {
   cv::Mat millimetres;
   frame.depth.convertTo(millimetres, CV_16U, frame.depth_unit_m * 1000.0);
   cv::imencode(".png", millimetres, out, {cv::IMWRITE_PNG_COMPRESSION, 1});
+  out.shrink_to_fit();
   return out;
 }
 
