@@ -28,9 +28,9 @@ namespace {
 // Between frames the trajectory holds dead-reckoned poses, so that no moment is farther than 0.02 s
 // from one at any frame rate the wheels outpace.
 constexpr double kDeadReckonedEveryS = 0.02;
-constexpr int kMinFirstFeatures = 50;         // with depth, to start a map on
-constexpr int kSearchEverywhereEvery = 5;     // frames without a match
-constexpr double kFoundSigmaM = 0.05;         // of a pose found by recognising the place
+constexpr int kMinFirstFeatures = 50;      // with depth, to start a map on
+constexpr int kSearchEverywhereEvery = 5;  // frames without a match
+constexpr double kFoundSigmaM = 0.05;      // of a pose found by recognising the place
 constexpr double kFoundSigmaRad = 0.03;
 constexpr double kSurprisingM = 0.15;
 constexpr int kFinalIterations = 8;
