@@ -57,7 +57,12 @@ void add_recording_commands(CLI::App& app, Action& chosen, bool& json) {
   record
       ->add_option("--world", r->world, "World: a name in sim/worlds, random:SEED, or an SDF file")
       ->required();
-  record->add_option("--route", r->route, "Route: a name in sim/routes or a YAML file")->required();
+  record
+      ->add_option("--route", r->route,
+                   "Route: a name in sim/routes, a YAML file, or one made for the world: "
+                   "loop:METRES[:SEED[:LAPS]] a closed tour, turns:METRES[:SEED] one that turns in "
+                   "place at every stop, spin:X,Y,YAW[:RATE[:SECONDS]] turning on one spot")
+      ->required();
   record->add_option("-o,--output", r->output, "The .rawlog to write")->required();
   record->add_option("--seed", r->seed, "Seed of all noise");
   record->add_option("--scenario", r->scenario,

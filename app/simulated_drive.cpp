@@ -12,66 +12,52 @@ namespace rovigo::app {
 namespace {
 
 constexpr int kStepsPerCommand = 2;  // 120 Hz on a 240 Hz simulator
-constexpr double kStandBeforeS = 1.0;
-constexpr double kStandAfterS = 0.5;
-
-/// One simulated drive, advanced a command period at a time.
-class Loop {
- public:
-  Loop(sim::Simulator& simulator, const TPose2D& world_from_map, PoseSource& poses,
-       const DriveHooks& hooks)
-      : simulator_(simulator),
-        map_from_world_(maps::inverse(world_from_map)),
-        poses_(poses),
-        hooks_(hooks) {}
-
-  void advance(const TTwist2D& command) {
-    for (int i = 0; i < kStepsPerCommand; ++i) {
-      simulator_.step(command);
-      for (const auto& observation : simulator_.take_observations()) {
-        poses_.observe(*observation);
-        if (hooks_.observation) hooks_.observation(*observation);
-      }
-    }
-  }
-  void stand_still(double seconds) {
-    const double until = simulator_.time_s() + seconds;
-    while (simulator_.time_s() < until) advance(TTwist2D());
-  }
-  control::DriveStep step(control::TrajectoryTracker& tracker, double begin_s,
-                          control::TrackStatus& status) {
-    const double now = simulator_.time_s();
-    const control::PoseInput pose = poses_.pose(now);
-    const control::TrackerOutput out = tracker.step(now, pose);
-    status = out.status;
-    control::DriveStep step;
-    step.time_s = now - begin_s;
-    step.true_pose =
-        maps::compose(map_from_world_, TPose2D(simulator_.truth().world_from_base.asTPose()));
-    step.estimated_pose = pose.map_from_base;
-    step.quality = pose.quality;
-    step.sigma_position_m = pose.sigma_position_m;
-    step.command = out.command;
-    step.true_twist = simulator_.truth().twist;
-    step.reference = out.reference;
-    step.heading_error_rad = out.heading_error_rad;
-    step.cross_track_error_m = out.cross_track_error_m;
-    return step;
-  }
-
- private:
-  sim::Simulator& simulator_;
-  TPose2D map_from_world_;
-  PoseSource& poses_;
-  const DriveHooks& hooks_;
-};
 
 }  // namespace
+
+void DriveLoop::advance(const TTwist2D& command) {
+  for (int i = 0; i < kStepsPerCommand; ++i) {
+    simulator_.step(command);
+    for (const auto& observation : simulator_.take_observations()) {
+      poses_.observe(*observation);
+      if (hooks_.observation) hooks_.observation(*observation);
+    }
+  }
+}
+
+void DriveLoop::stand_still(double seconds) {
+  const double until = simulator_.time_s() + seconds;
+  while (simulator_.time_s() < until) advance(TTwist2D());
+}
+
+TPose2D DriveLoop::true_pose() const {
+  return maps::compose(map_from_world_, TPose2D(simulator_.truth().world_from_base.asTPose()));
+}
+
+control::DriveStep DriveLoop::step(control::TrajectoryTracker& tracker, double begin_s,
+                                   control::TrackStatus& status) {
+  const double now = simulator_.time_s();
+  const control::PoseInput pose = poses_.pose(now);
+  const control::TrackerOutput out = tracker.step(now, pose);
+  status = out.status;
+  control::DriveStep step;
+  step.time_s = now - begin_s;
+  step.true_pose = true_pose();
+  step.estimated_pose = pose.map_from_base;
+  step.quality = pose.quality;
+  step.sigma_position_m = pose.sigma_position_m;
+  step.command = out.command;
+  step.true_twist = simulator_.truth().twist;
+  step.reference = out.reference;
+  step.heading_error_rad = out.heading_error_rad;
+  step.cross_track_error_m = out.cross_track_error_m;
+  return step;
+}
 
 control::DriveLog drive_in_simulator(sim::Simulator& simulator, const TPose2D& world_from_map,
                                      PoseSource& poses, control::TrajectoryTracker& tracker,
                                      double planned_duration_s, const DriveHooks& hooks) {
-  Loop loop(simulator, world_from_map, poses, hooks);
+  DriveLoop loop(simulator, world_from_map, poses, hooks);
   control::DriveLog log;
   loop.stand_still(kStandBeforeS);
   const int contacts_before = simulator.truth().contact_events;

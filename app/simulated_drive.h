@@ -18,6 +18,35 @@ struct DriveHooks {
   std::function<void(const mrpt::obs::CObservation&)> observation;
 };
 
+inline constexpr double kStandBeforeS = 1.0;  ///< the gyro's bias can be learned
+inline constexpr double kStandAfterS = 0.5;
+
+/// One simulated drive, advanced a command period (1/120 s of simulated time) at a time.
+class DriveLoop {
+ public:
+  /// All of them must outlive this.
+  DriveLoop(sim::Simulator& simulator, const TPose2D& world_from_map, PoseSource& poses,
+            const DriveHooks& hooks)
+      : simulator_(simulator),
+        map_from_world_(maps::inverse(world_from_map)),
+        poses_(poses),
+        hooks_(hooks) {}
+
+  void advance(const TTwist2D& command);
+  void stand_still(double seconds);
+  /// What the tracker wants now, as a step of the log whose time counts from `begin_s`.
+  control::DriveStep step(control::TrajectoryTracker& tracker, double begin_s,
+                          control::TrackStatus& status);
+  /// Where the rover truly is, in the map frame.
+  TPose2D true_pose() const;
+
+ private:
+  sim::Simulator& simulator_;
+  TPose2D map_from_world_;
+  PoseSource& poses_;
+  const DriveHooks& hooks_;
+};
+
 /// Stands still for a second (the gyro's bias can be learned), drives until the tracker ends the
 /// drive, stands still for half a second. Control runs at 120 Hz of simulated time.
 control::DriveLog drive_in_simulator(sim::Simulator& simulator, const TPose2D& world_from_map,

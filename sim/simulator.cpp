@@ -152,6 +152,7 @@ struct Simulator::Impl {
       body.place(maps::compose(TPose2D(p.x(), p.y(), p.yaw()),
                                TPose2D(k.forward_m, k.left_m, k.turn_deg * maps::kPi / 180.0)));
       imu.reset_motion(body.state());
+      ++truth.kidnaps;
     }
   }
 

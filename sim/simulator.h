@@ -24,8 +24,11 @@ struct SensorRig {
 /// What only the scorer may see.
 struct Truth {
   mrpt::poses::CPose3D world_from_base;
-  TTwist2D twist;          ///< of base_link, in base_link
-  int contact_events = 0;  ///< times the rover began to touch anything but the floor
+  TTwist2D twist;             ///< of base_link, in base_link
+  int contact_events = 0;     ///< times the rover began to touch anything but the floor
+  bool carried = false;       ///< somebody holds it: its wheels stand whatever is commanded
+  int kidnaps = 0;            ///< times it was carried away, the present one included
+  bool camera_blind = false;  ///< covered, or no frames
 };
 
 struct SimulatorOptions {
