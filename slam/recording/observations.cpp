@@ -21,6 +21,12 @@ mrpt::Clock::time_point timestamp_from_seconds(double time_s) {
   return mrpt::Clock::time_point(mrpt::Clock::duration(ticks));
 }
 
+mrpt::Clock::time_point timestamp_from_nanoseconds(std::uint64_t time_ns) {
+  constexpr std::uint64_t kTick_ns = 100;
+  const auto ticks = static_cast<long long>((time_ns + kTick_ns / 2) / kTick_ns) + kEpochTicks;
+  return mrpt::Clock::time_point(mrpt::Clock::duration(ticks));
+}
+
 double seconds_of(const mrpt::obs::CObservation& observation) {
   const long long ticks = observation.timestamp.time_since_epoch().count() - kEpochTicks;
   return static_cast<double>(ticks) / kTicksPerSecond;

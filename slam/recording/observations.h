@@ -7,6 +7,7 @@
 #include <mrpt/obs/CObservationOdometry.h>
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -18,6 +19,8 @@ namespace rovigo::slam {
 /// Seconds to MRPT's 100 ns ticks, rounded to the nearest (mrpt::Clock::fromDouble cuts off, so
 /// that a time written and read again would lose a tick).
 mrpt::Clock::time_point timestamp_from_seconds(double time_s);
+/// Nanoseconds since 1970, as ROS stamps its messages, to the nearest tick.
+mrpt::Clock::time_point timestamp_from_nanoseconds(std::uint64_t time_ns);
 double seconds_of(const mrpt::obs::CObservation& observation);
 /// The time in seconds with all seven decimals, exact where a double is not.
 std::string time_text(const mrpt::obs::CObservation& observation);

@@ -2,6 +2,7 @@
 #include <cctype>
 
 #include "maps/error.h"
+#include "slam/recording/bag_reader.h"
 #include "slam/recording/rawlog_reader.h"
 #include "slam/recording/recording.h"
 #include "slam/recording/tum_reader.h"
@@ -26,14 +27,10 @@ std::unique_ptr<RecordingReader> open_recording(const std::filesystem::path& pat
   }
   if (std::filesystem::is_directory(path, error)) return open_tum_directory(path, options);
   if (!std::filesystem::is_regular_file(path, error)) {
-    throw maps::InputError(path.string() +
-                           ": neither a file nor a folder; give a .rawlog or a TUM directory");
+    throw maps::InputError(
+        path.string() + ": neither a file nor a folder; give a .rawlog, a .bag or a TUM directory");
   }
-  if (lower_extension(path) == ".bag") {
-    throw maps::InputError(path.string() +
-                           ": ROS bags are not read by this version yet; convert it to a TUM "
-                           "directory (rgb.txt, depth.txt and their images)");
-  }
+  if (lower_extension(path) == ".bag") return open_bag(path, options);
   return open_rawlog(path, options);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// Recordings, read and written: one interface over MRPT rawlogs and TUM directories.
+// Recordings: one interface over MRPT rawlogs and TUM directories (read and written) and ROS 1 bags
+// (read).
 
 #include <mrpt/obs/CObservation.h>
 
@@ -7,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "maps/map_file.h"
@@ -20,6 +22,8 @@ struct RecordingInfo {
   std::string format;  ///< "rawlog", "tum", "bag"
   Rig rig;
   std::optional<maps::SimulationOrigin> simulation;
+  /// What each sensor's data are read from, where there was a choice (the topics of a bag).
+  std::vector<std::pair<std::string, std::string>> sources;
 };
 
 struct OpenOptions {
@@ -42,7 +46,8 @@ class RecordingReader {
   virtual std::vector<std::string> warnings() const = 0;
 };
 
-/// Opens a `.rawlog` or a TUM directory. Throws InputError for anything missing, empty or foreign.
+/// Opens a `.rawlog`, a `.bag` or a TUM directory. Throws InputError for anything missing, empty or
+/// foreign.
 std::unique_ptr<RecordingReader> open_recording(const std::filesystem::path& path,
                                                 const OpenOptions& options = {});
 

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "maps/error.h"
+#include "slam/recording/association.h"
 #include "slam/recording/text_file.h"
 #include "slam/trajectory_file.h"
 
@@ -33,6 +34,13 @@ bool names_depth(const std::filesystem::path& path) {
   return path.string().find("depth") != std::string::npos;
 }
 
+std::vector<double> times_of(const std::vector<ImageEntry>& images) {
+  std::vector<double> times_s;
+  times_s.reserve(images.size());
+  for (const ImageEntry& image : images) times_s.push_back(image.time_s);
+  return times_s;
+}
+
 }  // namespace
 
 std::vector<ImageEntry> read_image_list(const std::filesystem::path& path) {
@@ -51,32 +59,9 @@ std::vector<ImageEntry> read_image_list(const std::filesystem::path& path) {
 
 std::vector<RgbdEntry> associate(const std::vector<ImageEntry>& color,
                                  const std::vector<ImageEntry>& depth, double max_difference_s) {
-  using Candidate = std::tuple<double, std::size_t, std::size_t>;  // difference, colour, depth
-  constexpr std::size_t kMostPerImage = 8;  // bounds the work on hostile lists
-  std::vector<Candidate> candidates;
-  for (std::size_t i = 0; i < color.size(); ++i) {
-    const double earliest = color[i].time_s - max_difference_s;
-    auto near = std::lower_bound(depth.begin(), depth.end(), earliest,
-                                 [](const ImageEntry& e, double t) { return e.time_s < t; });
-    for (std::size_t n = 0; near != depth.end() && n < kMostPerImage; ++near, ++n) {
-      const double difference = std::abs(near->time_s - color[i].time_s);
-      if (difference > max_difference_s) break;
-      candidates.emplace_back(difference, i, static_cast<std::size_t>(near - depth.begin()));
-    }
-  }
-  std::sort(candidates.begin(), candidates.end());
-  constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> depth_of(color.size(), kNone);
-  std::vector<bool> is_taken(depth.size(), false);
-  for (const auto& [difference, i, j] : candidates) {
-    if (depth_of[i] != kNone || is_taken[j]) continue;
-    depth_of[i] = j;
-    is_taken[j] = true;
-  }
   std::vector<RgbdEntry> pairs;
-  for (std::size_t i = 0; i < color.size(); ++i) {
-    if (depth_of[i] == kNone) continue;
-    pairs.push_back({color[i].time_s, color[i].path, depth[depth_of[i]].path});
+  for (const auto& [i, j] : closest_pairs(times_of(color), times_of(depth), max_difference_s)) {
+    pairs.push_back({color[i].time_s, color[i].path, depth[j].path});
   }
   return pairs;
 }
