@@ -81,8 +81,8 @@ int LayoutChoice::color_score(const std::string& topic, const BagImageTopic& ima
   int score = image.kind == BagImageKind::kColor ? 100 : 50;
   if (has_any(name, {"rgb", "color", "colour"})) score += 20;
   if (has_any(name, {"infra", "/ir", "fisheye", "depth", "disparity", "confidence"})) score -= 60;
-  if (has_any(name, {"infra1", "infrared_1", "left"}))
-    score += 3;  // where RealSense sees depth from
+  const bool is_left = has_any(name, {"infra1", "infrared_1", "left"});
+  if (image.kind == BagImageKind::kGrey && is_left) score += 3;  // RealSense sees depth from there
   if (has_any(name, {"aligned_color"})) score -= 10;
   if (has_any(name, {"rect"})) score += 2;
   if (!image.is_compressed) score += 1;  // the same image twice: without losses

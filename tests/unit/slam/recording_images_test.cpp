@@ -6,7 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "recording_test_data.h"
+#include "tests/support/recordings.h"
 
 namespace rovigo::slam {
 namespace {

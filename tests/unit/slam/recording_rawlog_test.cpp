@@ -13,7 +13,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "recording_test_data.h"
+#include "tests/support/recordings.h"
 #include "slam/recording/images.h"
 
 namespace rovigo::slam {

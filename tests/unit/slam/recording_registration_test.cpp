@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "recording_test_data.h"
+#include "tests/support/recordings.h"
 #include "slam/recording/depth_registration.h"
 #include "slam/recording/images.h"
 #include "slam/recording/rgbd_normalizer.h"

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "recording_test_data.h"
+#include "tests/support/recordings.h"
 
 namespace rovigo::slam {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <opencv2/imgcodecs.hpp>
 
-#include "recording_test_data.h"
+#include "tests/support/recordings.h"
 #include "slam/recording/images.h"
 #include "slam/recording/tum_lists.h"
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-#include "recording_test_data.h"
+#include "tests/support/recordings.h"
 
 namespace rovigo::slam {
 namespace {
