@@ -16,14 +16,15 @@ TruthRecorder::TruthRecorder(const sim::World& world, const sim::Simulator& simu
 
 void TruthRecorder::frame(double time_s) {
   const CPose3D world_from_base = simulator_.truth().world_from_base;
-  const bool first = base_.empty();
-  if (first) world_from_map_ = world_from_base;
+  if (base_.empty()) world_from_map_ = world_from_base;
   const CPose3D map_from_base = world_from_base - world_from_map_;
   base_.push_back({time_s, map_from_base});
   camera_.push_back({time_s, map_from_base + simulator_.rig().base_from_camera});
-  if (first || moved_since_last_view(world_from_base)) {
+  if (simulator_.truth().camera_blind) return;  // a covered camera sees no surface
+  if (camera_has_seen_nothing_ || moved_since_last_view(world_from_base)) {
     seen_.add_view(world_from_base + simulator_.rig().base_from_camera, simulator_.rig().camera);
     last_view_ = world_from_base;
+    camera_has_seen_nothing_ = false;
   }
 }
 

@@ -33,6 +33,7 @@ class TruthRecorder {
   sim::SeenSurfaces seen_;
   mrpt::poses::CPose3D world_from_map_;
   mrpt::poses::CPose3D last_view_;
+  bool camera_has_seen_nothing_ = true;
   std::vector<slam::StampedPose> base_;
   std::vector<slam::StampedPose> camera_;
 };

@@ -173,6 +173,19 @@ void Kidnap::describe(maps::SettingsVisitor& v) {
          left_m);
   v.real({.name = "turn_deg", .help = "By how much it is turned.", .min = -180, .max = 180},
          turn_deg);
+  v.real({.name = "carry_s", .help = "How long the ride takes.", .min = 0, .max = 60}, carry_s);
+  v.text({.name = "kind",
+          .help = "Whether the IMU feels the ride, does not, or is silent as the wheels are.",
+          .choices = {"carried", "unfelt", "switched_off"}},
+         kind);
+  v.text({.name = "camera",
+          .help = "No frames during the ride, or black ones.",
+          .choices = {"missing", "covered"}},
+         camera);
+  v.text({.name = "where",
+          .help = "The free spot nearest to the asked one, or a place it drove through before.",
+          .choices = {"free", "driven"}},
+         where);
 }
 
 namespace {

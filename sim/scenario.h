@@ -83,12 +83,20 @@ struct Blackout {
   void describe(maps::SettingsVisitor& v);
 };
 
-/// Somebody carries the rover away: it is at rest elsewhere the next moment.
+/// Somebody carries the rover away and puts it down elsewhere.
 struct Kidnap {
   double time_s = 0.0;
-  double forward_m = 0.0;
+  double forward_m = 4.0;  ///< asked displacement, seen from where it was
   double left_m = 0.0;
-  double turn_deg = 0.0;
+  double turn_deg = 120.0;
+  double carry_s = 0.0;  ///< 0: it stands there the next moment, and no sensor felt a thing
+  /// What the IMU makes of the ride: "carried" (it feels it), "unfelt" (rest), or "switched_off"
+  /// (IMU and wheels are silent).
+  std::string kind = "carried";
+  std::string camera = "missing";  ///< meanwhile: "missing" frames, or "covered" ones
+  /// "free": the free spot nearest to the asked one that can be driven to; "driven": of the places
+  /// it came through before, one about as far away as asked.
+  std::string where = "free";
   void describe(maps::SettingsVisitor& v);
 };
 

@@ -9,6 +9,7 @@
 #include "sim/body_sensors.h"
 #include "sim/depth_camera.h"
 #include "sim/drive_train.h"
+#include "sim/kidnapping.h"
 #include "sim/rover.h"
 #include "sim/world_model.h"
 
@@ -132,32 +133,61 @@ struct Simulator::Impl {
   double elapsed_s() const { return static_cast<double>(step_index) * kStepS; }
 
   void step(const TTwist2D& command) {
+    if (ride) {
+      drive.step(elapsed_s(), kStepS, TTwist2D(), 0.0, 0.0);  // the motors are let go
+    } else {
+      move(command);
+    }
+    ++step_index;
+    follow_kidnaps();
+    update_truth();
+    if (!is_switched_off()) imu.advance(state);
+    sense();
+  }
+
+  void move(const TTwist2D& command) {
     const auto out =
         drive.step(elapsed_s(), kStepS, command, body.left_speed_rad_s(), body.right_speed_rad_s());
     body.step(kStepS, out.left, out.right);
     wheels.advance(body.left_speed_rad_s() * kStepS / out.left_grip,
                    body.right_speed_rad_s() * kStepS / out.right_grip);
-    ++step_index;
-    apply_kidnaps();
-    update_truth();
-    imu.advance(state);
-    sense();
   }
 
-  void apply_kidnaps() {
+  bool is_switched_off() const { return ride && ride->kind() == "switched_off"; }
+
+  void follow_kidnaps() {
     const auto& kidnaps = options.scenario.kidnaps;
-    while (next_kidnap < kidnaps.size() && kidnaps[next_kidnap].time_s <= elapsed_s()) {
-      const Kidnap& k = kidnaps[next_kidnap++];
-      const auto& p = truth.world_from_base;
-      body.place(maps::compose(TPose2D(p.x(), p.y(), p.yaw()),
-                               TPose2D(k.forward_m, k.left_m, k.turn_deg * maps::kPi / 180.0)));
-      imu.reset_motion(body.state());
-      ++truth.kidnaps;
+    if (!kidnaps.empty()) track.add(pose_now());
+    if (ride && ride->is_over(elapsed_s())) put_down();
+    while (!ride && next_kidnap < kidnaps.size() && kidnaps[next_kidnap].time_s <= elapsed_s()) {
+      take_away(kidnaps[next_kidnap++]);
     }
+  }
+
+  TPose2D pose_now() const {
+    const auto& p = truth.world_from_base;
+    return {p.x(), p.y(), p.yaw()};
+  }
+
+  void take_away(const Kidnap& kidnap) {
+    if (!spots) spots.emplace(world, options.robot);
+    ++truth.kidnaps;
+    const TTwist2D twist(state.velocity.x(), state.velocity.y(), state.angular_velocity.z());
+    ride.emplace(pose_now(), twist, spots->choose(pose_now(), kidnap, track), kidnap, elapsed_s());
+    if (ride->is_over(elapsed_s())) put_down();
+  }
+
+  void put_down() {
+    body.place(ride->target());
+    ride.reset();
+    imu.reset_motion(body.state());
   }
 
   void update_truth() {
     state = body.state();
+    if (ride) state = ride->kind() == "unfelt" ? at_rest(state) : ride->at(elapsed_s());
+    truth.carried = ride.has_value();
+    truth.camera_blind = camera_is_blind();
     truth.world_from_base = to_mrpt(state.world_from_base);
     const Eigen::Matrix3d base_from_world = state.world_from_base.linear().transpose();
     const Eigen::Vector3d v = base_from_world * state.velocity;
@@ -165,9 +195,25 @@ struct Simulator::Impl {
     truth.contact_events = body.contact_events();
   }
 
+  static BodyState at_rest(BodyState state) {
+    state.velocity.setZero();
+    state.angular_velocity.setZero();
+    return state;
+  }
+
+  /// The blackout that rules now, or none.
+  const Blackout* blackout_now() const {
+    for (const auto& b : options.scenario.blackouts) {
+      if (elapsed_s() >= b.start_s && elapsed_s() < b.start_s + b.duration_s) return &b;
+    }
+    return nullptr;
+  }
+  bool camera_is_blind() const { return ride || blackout_now(); }
+
   void sense() {
-    if (imu_timer.is_due(step_index)) add(imu.sample(state, imu_timer.interval_s()));
-    if (wheel_timer.is_due(step_index)) add(wheels.sample(wheel_timer.interval_s()));
+    const bool off = is_switched_off();
+    if (imu_timer.is_due(step_index) && !off) add(imu.sample(state, imu_timer.interval_s()));
+    if (wheel_timer.is_due(step_index) && !off) add(wheels.sample(wheel_timer.interval_s()));
     if (camera && camera_timer.is_due(step_index)) add_shot();
   }
 
@@ -186,11 +232,10 @@ struct Simulator::Impl {
     for (const auto& s : options.scenario.light_steps) {
       if (elapsed_s() >= s.time_s) p.shot.light = s.factor;
     }
-    for (const auto& b : options.scenario.blackouts) {
-      if (elapsed_s() < b.start_s || elapsed_s() >= b.start_s + b.duration_s) continue;
-      if (b.kind == "missing") return;
-      p.shot.covered = true;
-    }
+    const Blackout* blackout = blackout_now();
+    if (blackout && blackout->kind == "missing") return;
+    if (ride && !ride->camera_covered()) return;
+    p.shot.covered = blackout || ride;
     pending.push_back(std::move(p));
   }
 
@@ -218,6 +263,9 @@ struct Simulator::Impl {
   std::deque<Pending> pending;
   long step_index = 0;
   std::size_t next_kidnap = 0;
+  DrivenTrack track;
+  std::optional<PutDownSpots> spots;
+  std::optional<Ride> ride;
 };
 
 Simulator::Simulator(const World& world, const SimulatorOptions& options)
