@@ -7,8 +7,10 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "slam/ceres_pose.h"
+#include "slam/link_error.h"
 
 namespace rovigo::slam {
 
@@ -92,25 +94,6 @@ struct FloorError {
   double height_sigma, tilt_sigma;
 };
 
-/// A soft link between two keyframes (wheels and gyro).
-struct LinkError {
-  template <class T>
-  bool operator()(const T* from_step, const T* to_step, T* residual) const {
-    const PoseOf<T> from(from_origin, from_step), to(to_origin, to_step);
-    const Eigen::Matrix<T, 3, 3> measured_back = measured.rotation.transpose().cast<T>();
-    const Eigen::Matrix<T, 3, 1> between =
-        from.rotation.transpose() * (to.translation - from.translation);
-    const Eigen::Matrix<T, 3, 3> turn = measured_back * from.rotation.transpose() * to.rotation;
-    Eigen::Matrix<T, 6, 1> error;
-    error.template head<3>() = measured_back * (between - measured.translation.cast<T>());
-    ceres::RotationMatrixToAngleAxis(turn.data(), error.data() + 3);
-    for (int i = 0; i < 6; ++i) residual[i] = error(i) * T(root_weight(i));
-    return true;
-  }
-  Se3 from_origin, to_origin, measured;
-  Vector6d root_weight;
-};
-
 class Bundle {
  public:
   Bundle(LandmarkMap& map, const std::vector<int>& keyframes, const BundleConfig& config)
@@ -158,18 +141,17 @@ class Bundle {
     }
   }
 
-  void add_links(const std::vector<PoseGraphEdge>& edges) {
-    for (const PoseGraphEdge& e : edges) {
-      if (!is_free_[static_cast<std::size_t>(e.from)] &&
-          !is_free_[static_cast<std::size_t>(e.to)]) {
-        continue;
-      }
-      problem_.AddResidualBlock(
-          new ceres::AutoDiffCostFunction<LinkError, 6, 6, 6>(
-              new LinkError{map_.keyframe(e.from).map_from_base, map_.keyframe(e.to).map_from_base,
-                            e.from_from_to, e.information.diagonal().cwiseSqrt()}),
-          new ceres::CauchyLoss(kKernel), step(e.from), step(e.to));
+  void add_links(const std::vector<MotionLink>& links) {
+    for (const MotionLink& l : links) {
+      const bool concerned = is_free_[static_cast<std::size_t>(l.from)] != 0 ||
+                             is_free_[static_cast<std::size_t>(l.to)] != 0;
+      if (concerned) links_.push_back(l);
     }
+    std::vector<Se3> poses;
+    for (const Keyframe& k : map_.keyframes()) poses.push_back(k.map_from_base);
+    link_errors_.emplace(links_, map_.config().dead_reckoning);
+    link_errors_->add_to(problem_, poses, [this](int keyframe) { return step(keyframe); });
+    for (auto& c : link_errors_->calibrations()) ordering_->AddElementToGroup(c.data(), 1);
   }
 
   ceres::Solver::Summary solve() {
@@ -243,6 +225,8 @@ class Bundle {
   std::vector<Step> steps_;
   std::vector<std::uint8_t> is_free_;
   std::vector<int> used_;
+  std::vector<MotionLink> links_;
+  std::optional<LinkErrors> link_errors_;
   ceres::Problem problem_;
   std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ =
       std::make_shared<ceres::ParameterBlockOrdering>();
@@ -251,13 +235,13 @@ class Bundle {
 }  // namespace
 
 BundleResult adjust_bundle(LandmarkMap& map, const std::vector<int>& keyframes,
-                           const std::vector<PoseGraphEdge>& edges, const BundleConfig& config) {
+                           const std::vector<MotionLink>& links, const BundleConfig& config) {
   BundleResult result;
   if (map.keyframes().size() < 2) return result;
   Bundle bundle(map, keyframes, config);
   result.sightings = bundle.add_sightings();
   if (result.sightings == 0) return result;
-  bundle.add_links(edges);
+  bundle.add_links(links);
   if (config.on_floor) bundle.add_floor();
   const ceres::Solver::Summary summary = bundle.solve();
   result.initial_cost = summary.initial_cost;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "slam/landmark_map.h"
-#include "slam/pose_graph.h"
+#include "slam/motion_link.h"
 
 namespace rovigo::slam {
 
@@ -22,10 +22,10 @@ struct BundleResult {
   bool converged = false;
 };
 
-/// Adjusts `keyframes` (those outside the list are held) and the landmarks they see; `edges` are
-/// kept as soft links. Sightings that do not fit in the end are removed. With an empty list all
-/// keyframes but the first are adjusted.
+/// Adjusts `keyframes` (those outside the list are held) and the landmarks they see; `links` hold
+/// neighbours together, their calibration is solved for as well. Sightings that do not fit in the
+/// end are removed. With an empty list all keyframes but the first are adjusted.
 BundleResult adjust_bundle(LandmarkMap& map, const std::vector<int>& keyframes,
-                           const std::vector<PoseGraphEdge>& edges, const BundleConfig& config);
+                           const std::vector<MotionLink>& links, const BundleConfig& config);
 
 }  // namespace rovigo::slam

@@ -47,7 +47,10 @@ double CameraFrame::depth_at(const Eigen::Vector2d& raw_pixel, const DepthConfig
   const int v = static_cast<int>(std::lround(raw_pixel.y()));
   if (depth.empty() || u < 1 || v < 1 || u >= depth.cols - 1 || v >= depth.rows - 1) return 0.0;
   const double z = depth.at<std::uint16_t>(v, u) * depth_unit_m;
-  if (z < config.min_depth_m || z > config.max_depth_m) return 0.0;
+  // Near the end of the range only readings that err short come through: their mean would lie.
+  const double farthest =
+      config.max_depth_m - 3.0 * config.sigma_at_1m_m * config.max_depth_m * config.max_depth_m;
+  if (z < config.min_depth_m || z > farthest) return 0.0;
   // Neighbours within the noise are averaged; any beyond it means an edge.
   const double gate = std::max(0.02, 5.0 * config.sigma_at_1m_m * z * z) + 0.01 * z;
   double sum = 0.0;

@@ -12,9 +12,9 @@ constexpr double kGyroTimeoutS = 0.1;   // an older reading is no reading
 constexpr double kWheelTimeoutS = 0.5;  // wheels silent for longer: assumed standing
 constexpr double kStandingSpeedMS = 1e-3;
 constexpr double kStandingTurnRadS = 0.01;
-constexpr double kSlipMemoryS = 0.1;    // smoothing of wheels against gyro
-constexpr double kTrackM = 0.358;       // lever of a slipping wheel; nominal is good enough
-constexpr double kLateralShare = 0.02;  // sideways creep, as a share of the motion
+constexpr double kSlipMemoryS = 0.1;  // smoothing of wheels against gyro
+constexpr double kTrackM = 0.358;     // lever of a slipping wheel; nominal is good enough
+constexpr double kCarriedRad = 0.15;  // turned so far on standing wheels: carried
 constexpr double kMinTurnToCalibrate = 0.15;
 
 }  // namespace
@@ -27,6 +27,7 @@ DeadReckoning::DeadReckoning(const DeadReckoningConfig& config) : config_(config
 
 void DeadReckoning::place(const TPose2D& map_from_base, double sigma_position_m,
                           double sigma_heading_rad) {
+  carried_ = false;
   x_.head<3>() << map_from_base.x, map_from_base.y, map_from_base.phi;
   p_.topRows<3>().setZero();
   p_.leftCols<3>().setZero();
@@ -79,7 +80,10 @@ void DeadReckoning::propagate(double dt) {
   x_(kYaw) += omega * dt;
   assumed_distance_m_ += wheel_speed_ * dt;
   assumed_turn_rad_ += wheel_turn_rate_ * dt;
-  if (gyro_rate_) gyro_turn_rad_ += (*gyro_rate_ - x_(kGyroBias)) * dt;
+  if (gyro_rate_) {
+    gyro_turn_rad_ += (*gyro_rate_ - x_(kGyroBias)) * dt;
+    raw_gyro_turn_rad_ += *gyro_rate_ * dt;
+  }
 
   Matrix f = Matrix::Identity();
   f(kX, kYaw) = -distance * s;
@@ -94,21 +98,19 @@ void DeadReckoning::propagate(double dt) {
     }
   }
   p_ = f * p_ * f.transpose();
-  if (!standing_) {
-    // White noise of the readings, taken at about 50 Hz, and creep that grows with the motion.
-    constexpr double kReadingS = 0.02;
-    double along = std::pow(config_.wheel_speed_sigma_m_s, 2) * dt * kReadingS;
-    if (slipping_) along += std::pow(0.2 * wheel_speed_, 2) * dt * 0.3;
-    const double across =
-        std::pow(kLateralShare, 2) * (std::abs(distance) + 0.05 * std::abs(omega) * dt) * 0.1;
-    p_(kX, kX) += along * c * c + across * s * s;
-    p_(kY, kY) += along * s * s + across * c * c;
-    p_(kX, kY) += (along - across) * s * c;
-    p_(kY, kX) = p_(kX, kY);
-    const double turn_sigma = gyro_rate_ ? config_.gyro_sigma_rad_s
-                                         : config_.wheel_turn_sigma_rad_s + 0.05 * std::abs(omega);
-    p_(kYaw, kYaw) += turn_sigma * turn_sigma * dt * kReadingS;
-  }
+  const StepNoise noise = noise_of({.begin_s = time_s_,
+                                    .end_s = time_s_ + dt,
+                                    .distance_m = distance,
+                                    .turn_rad = omega * dt,
+                                    .has_gyro = gyro_rate_.has_value(),
+                                    .slipping = slipping_,
+                                    .standing = standing_},
+                                   config_);
+  p_(kX, kX) += noise.along_m2 * c * c + noise.across_m2 * s * s;
+  p_(kY, kY) += noise.along_m2 * s * s + noise.across_m2 * c * c;
+  p_(kX, kY) += (noise.along_m2 - noise.across_m2) * s * c;
+  p_(kY, kX) = p_(kX, kY);
+  p_(kYaw, kYaw) += noise.heading_rad2;
   p_(kGyroBias, kGyroBias) += std::pow(config_.gyro_bias_walk_rad_s2, 2) * dt;
 }
 
@@ -131,6 +133,7 @@ void DeadReckoning::add_gyro(double time_s, double yaw_rate_rad_s) {
     const double correction = 0.5 * (yaw_rate_rad_s - *gyro_rate_) * since;
     x_(kYaw) += correction;
     gyro_turn_rad_ += correction;
+    raw_gyro_turn_rad_ += correction;
   }
   gyro_rate_ = yaw_rate_rad_s;
   gyro_time_s_ = time_s;
@@ -167,10 +170,32 @@ void DeadReckoning::add_wheels(double time_s, const TPose2D& odom_from_base) {
     standing_ = std::abs(wheel_speed_) < kStandingSpeedMS &&
                 std::abs(wheel_turn_rate_) < kStandingTurnRadS &&
                 (!gyro_rate_ || std::abs(*gyro_rate_ - x_(kGyroBias)) < 0.05);
+    judge_carrying(along, step.phi);
+    step_ = MotionStep{.begin_s = odometry_time_s_,
+                       .end_s = time_s,
+                       .distance_m = distance,
+                       .turn_rad = gyro_rate_ ? raw_gyro_turn_rad_ : step.phi,
+                       .has_gyro = gyro_rate_.has_value(),
+                       .slipping = slipping_,
+                       .standing = standing_};
   }
   odometry_ = odom_from_base;
   odometry_time_s_ = time_s;
-  assumed_distance_m_ = assumed_turn_rad_ = gyro_turn_rad_ = 0.0;
+  assumed_distance_m_ = assumed_turn_rad_ = gyro_turn_rad_ = raw_gyro_turn_rad_ = 0.0;
+}
+
+/// Wheels at rest and a body that turns: it hangs in somebody's hands, or on a turntable.
+void DeadReckoning::judge_carrying(double wheel_distance_m, double wheel_turn_rad) {
+  const bool wheels_rest = std::abs(wheel_distance_m) < 1e-4 && std::abs(wheel_turn_rad) < 1e-4;
+  turned_standing_rad_ =
+      wheels_rest && !standing_ && gyro_rate_ ? turned_standing_rad_ + gyro_turn_rad_ : 0.0;
+  if (std::abs(turned_standing_rad_) > kCarriedRad) carried_ = true;
+}
+
+std::optional<MotionStep> DeadReckoning::take_step() {
+  std::optional<MotionStep> out;
+  std::swap(out, step_);
+  return out;
 }
 
 void DeadReckoning::judge_slip(double wheel_turn_rate, double dt) {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "maps/geometry.h"
+#include "slam/motion_link.h"
 #include "slam/slam_config.h"
 
 namespace rovigo::slam {
@@ -57,12 +58,19 @@ class DeadReckoning {
   TTwist2D twist() const;
   bool slipping() const { return slipping_; }
   bool standing() const { return standing_; }
+  /// Turned by something other than its wheels: somebody has carried it, until it is found again.
+  bool carried() const { return carried_; }
+  void found() { carried_ = false; }
+  MotionCalibration calibration() const { return x_.tail<3>(); }
+  /// What the last reading of the wheels added; each step is handed out once.
+  std::optional<MotionStep> take_step();
 
  private:
   void propagate(double dt);
   void move_along_heading(double distance_m);
   void update_scalar(const Vector& h, double innovation, double variance);
   void judge_slip(double wheel_turn_rate, double dt);
+  void judge_carrying(double wheel_distance_m, double wheel_turn_rad);
   double turn_rate() const;
 
   DeadReckoningConfig config_;
@@ -79,7 +87,10 @@ class DeadReckoning {
   double assumed_distance_m_ = 0.0, assumed_turn_rad_ = 0.0;  ///< raw, since the last reading
   double gyro_turn_rad_ = 0.0;       ///< unbiased, since the last reading of the wheels
   double disagreement_rad_s_ = 0.0;  ///< wheels minus gyro, smoothed
-  bool slipping_ = false, standing_ = false;
+  double raw_gyro_turn_rad_ = 0.0;   ///< as read, likewise
+  std::optional<MotionStep> step_;
+  double turned_standing_rad_ = 0.0;  ///< by the gyro while the wheels stood
+  bool slipping_ = false, standing_ = false, carried_ = false;
 };
 
 }  // namespace rovigo::slam

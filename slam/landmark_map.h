@@ -8,6 +8,7 @@
 #include "maps/map_file.h"
 #include "slam/features.h"
 #include "slam/se3.h"
+#include "slam/wall_match.h"
 
 namespace rovigo::slam {
 
@@ -19,6 +20,7 @@ struct Keyframe {
   std::vector<int> landmark_of;  ///< per feature; -1: none
   maps::Blob color_jpeg;
   maps::Blob depth_png;
+  WallScan walls;  ///< empty unless on a floor
 };
 
 struct Sighting {

@@ -10,6 +10,9 @@ namespace {
 constexpr std::size_t kObservers = 10;  // keyframes that see what is tracked
 constexpr std::size_t kRelatives = 4;   // and of the reference's neighbours
 constexpr int kMinShared = 15;
+constexpr std::size_t kAny = 20;  // features; fewer cannot be recognised
+constexpr int kTelling = 60;      // landmarks: a view that must show so many can contradict
+constexpr int kProvenFrames = 3;  // a corner of noise is not found again as often
 
 void add_unique(std::vector<int>& list, int id) {
   if (std::find(list.begin(), list.end(), id) == list.end()) list.push_back(id);
@@ -18,6 +21,7 @@ void add_unique(std::vector<int>& list, int id) {
 std::vector<int> nearest_keyframes(const LandmarkMap& map, const Se3& map_from_base) {
   std::vector<std::pair<double, int>> ranked;
   for (const Keyframe& k : map.keyframes()) {
+    if (k.features.size() < kAny) continue;
     ranked.emplace_back(keyframe_spacing(k.map_from_base, map_from_base, map.config().tracking),
                         k.id);
   }
@@ -43,6 +47,7 @@ LocalMap select_local_map(const LandmarkMap& map, const std::vector<int>& tracke
   const auto observers = map.observers(tracked_landmarks);
   if (observers.empty()) {
     local.keyframes = nearest_keyframes(map, map_from_base);
+    if (local.keyframes.empty()) return local;
     local.reference_keyframe = local.keyframes.front();
   } else {
     local.reference_keyframe = observers.front().first;
@@ -58,14 +63,36 @@ LocalMap select_local_map(const LandmarkMap& map, const std::vector<int>& tracke
   return local;
 }
 
+namespace {
+
+double nearest_spacing(const LandmarkMap& map, const LocalMap& local, const Se3& map_from_base) {
+  double nearest = 1e9;
+  for (const int k : local.keyframes) {
+    nearest = std::min(nearest, keyframe_spacing(map.keyframe(k).map_from_base, map_from_base,
+                                                 map.config().tracking));
+  }
+  return nearest;
+}
+
+}  // namespace
+
+bool is_new_place(const LandmarkMap& map, const LocalMap& local, const Se3& map_from_base) {
+  return nearest_spacing(map, local, map_from_base) > 1.0;
+}
+
+bool view_is_mapped(const LandmarkMap& map, const LocalMap& local, const Se3& map_from_base) {
+  const auto visible = visible_landmarks(map, local.landmarks, map_from_base);
+  const auto proven = std::count_if(visible.begin(), visible.end(), [&](const auto& v) {
+    const Landmark& l = map.landmark(v.landmark);
+    return l.tracked >= kProvenFrames && 2 * l.tracked >= l.predicted;
+  });
+  return proven >= kTelling;
+}
+
 bool wants_keyframe(const LandmarkMap& map, const LocalMap& local, const TrackResult& result,
                     const FeatureSet& features, const Se3& map_from_base) {
   const TrackingConfig& config = map.config().tracking;
-  double nearest = 1e9;
-  for (const int k : local.keyframes) {
-    nearest =
-        std::min(nearest, keyframe_spacing(map.keyframe(k).map_from_base, map_from_base, config));
-  }
+  const double nearest = nearest_spacing(map, local, map_from_base);
   const auto with_depth = std::count_if(features.features().begin(), features.features().end(),
                                         [](const Feature& f) { return f.depth_m > 0; });
   const double known = static_cast<double>(result.matches.size());

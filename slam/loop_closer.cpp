@@ -12,6 +12,7 @@ constexpr int kRecent = 12;       // keyframes just passed are no loop
 constexpr int kSharedEnough = 8;  // landmarks in common: tied together already
 constexpr int kRelatives = 3;
 constexpr int kRelativeShared = 40;
+constexpr int kTiedShared = 15;  // fewer landmarks in common with the last one: not tied by them
 constexpr double kLoopFloorM = 0.006;
 constexpr double kLoopFloorRad = 0.003;
 constexpr double kFalseLoopChi2 = 60.0;  // six degrees of freedom: far beyond any honest error
@@ -72,23 +73,24 @@ std::vector<PoseGraphEdge> tracked_edges(const LandmarkMap& map, int keyframe, b
     e.information = edge_information(e.from_from_to, on_floor);
     edges.push_back(e);
   };
-  if (keyframe > 0) add(keyframe - 1);
-  for (const auto& [other, shared] : map.covisible(keyframe, kRelativeShared)) {
-    if (static_cast<int>(edges.size()) > kRelatives) break;
-    if (other != keyframe - 1) add(other);
+  for (const auto& [other, shared] : map.covisible(keyframe, kTiedShared)) {
+    const bool before = other == keyframe - 1;
+    const bool relative = shared >= kRelativeShared && static_cast<int>(edges.size()) <= kRelatives;
+    if (before || relative) add(other);
   }
   return edges;
 }
 
-bool close_loop(LandmarkMap& map, std::vector<PoseGraphEdge>& edges, const LoopClosure& loop) {
-  std::vector<Se3> poses;
-  for (const Keyframe& k : map.keyframes()) poses.push_back(k.map_from_base);
-  std::vector<PoseGraphEdge> with_loop = edges;
-  with_loop.push_back(loop.edge);
-  const PoseGraphResult result = optimize_pose_graph(poses, with_loop, kIterations);
+bool close_loop(LandmarkMap& map, std::vector<PoseGraphEdge>& edges,
+                const std::vector<MotionLink>& links, const LoopClosure& loop) {
+  PoseGraph graph{{}, edges, links};
+  for (const Keyframe& k : map.keyframes()) graph.poses.push_back(k.map_from_base);
+  graph.edges.push_back(loop.edge);
+  const PoseGraphResult result =
+      optimize_pose_graph(graph, map.config().dead_reckoning, kIterations);
   if (!result.converged || result.edge_chi2.back() > kFalseLoopChi2) return false;
 
-  edges = std::move(with_loop);
+  edges = std::move(graph.edges);
   map.move_keyframes(result.poses);
   for (const FeatureMatch& m : loop.matches) {
     const int present = map.keyframe(loop.edge.to).landmark_of[static_cast<std::size_t>(m.feature)];

@@ -35,11 +35,13 @@ class LoopCloser {
   Relocalizer relocalizer_;
 };
 
-/// Odometry edges of a new keyframe: to the one before it and to its closest relatives, as tracked.
+/// What the camera says of a new keyframe: edges to the one before it, where both see the same
+/// things, and to its closest relatives, as tracked.
 std::vector<PoseGraphEdge> tracked_edges(const LandmarkMap& map, int keyframe, bool on_floor);
 
 /// Optimises the graph with the loop in it. True: it agrees with the rest; the map has moved and
 /// the landmarks of both views are one. False: the loop was false and nothing has changed.
-bool close_loop(LandmarkMap& map, std::vector<PoseGraphEdge>& edges, const LoopClosure& loop);
+bool close_loop(LandmarkMap& map, std::vector<PoseGraphEdge>& edges,
+                const std::vector<MotionLink>& links, const LoopClosure& loop);
 
 }  // namespace rovigo::slam

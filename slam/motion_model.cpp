@@ -78,7 +78,8 @@ PlanarInformation planar_information(const PoseSolution& solution, const Trackin
 MotionModel::MotionModel(const SlamConfig& config, const Rig& rig)
     : tracking_(config.tracking),
       planar_(rig.has_wheels && rig.has_extrinsics),
-      planar_filter_(config.dead_reckoning) {}
+      planar_filter_(config.dead_reckoning),
+      links_(config.dead_reckoning) {}
 
 void MotionModel::add(const mrpt::obs::CObservationIMU& imu) {
   using namespace mrpt::obs;
@@ -98,7 +99,13 @@ void MotionModel::add(const mrpt::obs::CObservationIMU& imu) {
 }
 
 void MotionModel::add(const mrpt::obs::CObservationOdometry& wheels) {
-  if (planar_) planar_filter_.add_wheels(time_of(wheels), wheels.odometry.asTPose());
+  if (!planar_) return;
+  planar_filter_.add_wheels(time_of(wheels), wheels.odometry.asTPose());
+  if (const auto step = planar_filter_.take_step()) links_.add(*step);
+}
+
+void MotionModel::mark_keyframe(int keyframe, double time_s) {
+  if (planar_) links_.mark(keyframe, time_s, planar_filter_.calibration());
 }
 
 Se3 MotionModel::predict_free(double time_s) const {
@@ -137,6 +144,7 @@ Se3 MotionModel::correct(double time_s, const PoseSolution& solution) {
   if (planar_) {
     planar_filter_.advance_to(time_s);
     planar_filter_.correct(planar_information(solution, tracking_), kLookFloorM, kLookFloorRad);
+    planar_filter_.found();
     // Height and tilt as seen, x, y and yaw as believed.
     const Se3 seen_plane = from_planar(to_planar(solution.map_from_base));
     return from_planar(planar_filter_.map_from_base()) *
@@ -154,6 +162,11 @@ Se3 MotionModel::correct(double time_s, const PoseSolution& solution) {
   unseen_s_ = 0.0;
   gyro_turn_.setIdentity();
   return map_from_base_;
+}
+
+Se3 MotionModel::correct(const PlanarInformation& look) {
+  planar_filter_.correct(look, kLookFloorM, kLookFloorRad);
+  return from_planar(planar_filter_.map_from_base());
 }
 
 void MotionModel::miss(double time_s) {

@@ -31,6 +31,8 @@ class MotionModel {
   MotionPrediction predict(double time_s);
   /// Takes in what vision found at `time_s`; returns the pose believed from then on.
   Se3 correct(double time_s, const PoseSolution& solution);
+  /// Takes in what walls say of a rover on its floor, now.
+  Se3 correct(const PlanarInformation& look);
   /// Vision found nothing: motion without a look becomes less certain.
   void miss(double time_s);
   /// Puts the rover at a pose found otherwise (start, relocalisation).
@@ -39,6 +41,13 @@ class MotionModel {
   void shift(const Se3& new_map_from_old_map);
 
   const DeadReckoning& dead_reckoning() const { return planar_filter_; }
+  /// The body turned while its wheels stood, and no look has confirmed a pose since.
+  bool carried() const { return planar_ && planar_filter_.carried(); }
+
+  /// A keyframe was made: wheels and gyro tie it to the one before, unless `cut` was called since.
+  void mark_keyframe(int keyframe, double time_s);
+  void cut_link() { links_.cut(); }
+  const std::vector<MotionLink>& links() const { return links_.links(); }
 
  private:
   Se3 predict_free(double time_s) const;
@@ -46,6 +55,7 @@ class MotionModel {
   TrackingConfig tracking_;
   bool planar_ = false;
   DeadReckoning planar_filter_;
+  MotionLinks links_;
 
   // Free motion.
   Se3 map_from_base_;

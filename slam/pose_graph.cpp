@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "slam/ceres_pose.h"
+#include "slam/link_error.h"
 
 namespace rovigo::slam {
 
@@ -51,12 +52,15 @@ double chi2_of(const PoseGraphEdge& e, const std::vector<Se3>& poses) {
 
 }  // namespace
 
-PoseGraphResult optimize_pose_graph(const std::vector<Se3>& poses,
-                                    const std::vector<PoseGraphEdge>& edges, int iterations) {
+PoseGraphResult optimize_pose_graph(const PoseGraph& graph, const DeadReckoningConfig& wheels,
+                                    int iterations) {
+  const std::vector<Se3>& poses = graph.poses;
+  const std::vector<PoseGraphEdge>& edges = graph.edges;
   PoseGraphResult result;
   result.poses = poses;
   if (poses.empty() || edges.empty()) return result;
   std::vector<std::array<double, 6>> steps(poses.size(), std::array<double, 6>{});
+  LinkErrors links(graph.links, wheels);
   ceres::Problem problem;
   for (const PoseGraphEdge& e : edges) {
     const auto from = static_cast<std::size_t>(e.from), to = static_cast<std::size_t>(e.to);
@@ -66,6 +70,8 @@ PoseGraphResult optimize_pose_graph(const std::vector<Se3>& poses,
         e.kind == maps::StoredEdge::Kind::kLoop ? new ceres::CauchyLoss(kLoopKernel) : nullptr;
     problem.AddResidualBlock(cost, loss, steps[from].data(), steps[to].data());
   }
+  links.add_to(problem, poses,
+               [&](int keyframe) { return steps[static_cast<std::size_t>(keyframe)].data(); });
   if (problem.HasParameterBlock(steps[0].data())) {
     problem.SetParameterBlockConstant(steps[0].data());
   }

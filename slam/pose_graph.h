@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "maps/map_file.h"
+#include "slam/motion_link.h"
 #include "slam/se3.h"
 
 namespace rovigo::slam {
@@ -26,9 +27,15 @@ struct PoseGraphResult {
   bool converged = false;
 };
 
+struct PoseGraph {
+  std::vector<Se3> poses;
+  std::vector<PoseGraphEdge> edges;
+  std::vector<MotionLink> links;  ///< wheels and gyro; their calibration is solved for as well
+};
+
 /// Levenberg-Marquardt (Ceres) with Cauchy's kernel on loops, so that a false one is outvoted; the
 /// first pose is held. One thread and Eigen's sparse solver: the same bytes on every machine.
-PoseGraphResult optimize_pose_graph(const std::vector<Se3>& poses,
-                                    const std::vector<PoseGraphEdge>& edges, int iterations);
+PoseGraphResult optimize_pose_graph(const PoseGraph& graph, const DeadReckoningConfig& wheels,
+                                    int iterations);
 
 }  // namespace rovigo::slam

@@ -4,6 +4,8 @@
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationOdometry.h>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -19,6 +21,7 @@
 #include "slam/place_match.h"
 #include "slam/surroundings.h"
 #include "slam/tracker.h"
+#include "slam/tracking_health.h"
 #include "slam/trajectory_history.h"
 
 namespace rovigo::slam {
@@ -29,11 +32,37 @@ namespace {
 // from one at any frame rate the wheels outpace.
 constexpr double kDeadReckonedEveryS = 0.02;
 constexpr int kMinFirstFeatures = 50;      // with depth, to start a map on
+constexpr int kPlenty = 150;               // features; fewer may be a hand or a dark room
 constexpr int kSearchEverywhereEvery = 5;  // frames without a match
-constexpr double kFoundSigmaM = 0.05;      // of a pose found by recognising the place
+constexpr int kSearchWhenLostEvery = 2;
+constexpr int kFewInliers = 120;  // fewer leave the heading to noise: walls are asked too
+constexpr int kMinWallPoints = 30;
+constexpr double kMinWallShare = 0.7;  // of the points that must lie on the walls
+constexpr int kWallKeyframes = 3;      // whose walls are looked at together
+constexpr double kBlindSpacing = 3.0;  // of keyframes in places that show nothing
+constexpr double kFoundSigmaM = 0.05;  // of a pose found by recognising the place
 constexpr double kFoundSigmaRad = 0.03;
 constexpr double kSurprisingM = 0.15;
 constexpr int kFinalIterations = 8;
+
+bool is_convincing(const WallMatch& match) {
+  return match.points >= kMinWallPoints && match.inlier_share >= kMinWallShare;
+}
+
+/// What walls alone say: the match was held by the prior where they are silent.
+MotionLink link_of(const WallMatch& match, const TPose2D& from) {
+  Eigen::Matrix3d information = match.look.information;
+  information.diagonal() += Eigen::Vector3d(1.0, 1.0, 1.0);  // 1 m, 1 rad: nothing
+  const Eigen::Vector3d step = -information.ldlt().solve(match.look.gradient);
+  const TPose2D& at = match.look.map_from_base;
+  const TPose2D to{at.x + step.x(), at.y + step.y(), at.phi + step.z()};
+  Eigen::Matrix3d from_map = Eigen::Matrix3d::Identity();
+  from_map.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-from.phi).toRotationMatrix();
+  MotionLink link;
+  link.from_from_to = maps::compose(maps::inverse(from), to);
+  link.covariance = from_map * information.inverse() * from_map.transpose();
+  return link;
+}
 
 }  // namespace
 
@@ -52,15 +81,24 @@ struct Slam::Impl {
   void begin(double time_s);
   void dead_reckon(double time_s);
   PoseEstimate on_frame(const mrpt::obs::CObservation3DRangeScan& scan);
+  Se3 follow_walls(const CameraFrame& frame, const Se3& pose);
+  std::vector<int> last_keyframes() const;
+  std::vector<PlacedWalls> placed_walls(const std::vector<int>& keyframes) const;
+  void link_walls(int keyframe, const std::vector<int>& earlier);
   TrackResult track(double time_s, const FeatureSet& features, const MotionPrediction& prediction);
   void recover(double time_s, const FeatureSet& features, TrackResult& result);
+  void move_to(double time_s, const Se3& seen, const Se3& believed, int keyframe);
+  void judge(double time_s, const FeatureSet& features, bool tracked, const Se3& pose);
   void remember_tracked(const TrackResult& result);
+  bool frame_joins_map(const TrackResult& result, const FeatureSet& features,
+                       const Se3& pose) const;
   void insert_keyframe(const CameraFrame& frame, FeatureSet features, const TrackResult& result,
                        const Se3& pose);
+  std::vector<MotionLink> links() const;
   void look_for_loop(double time_s);
   void adjust_everything();
   void remember_pose(double time_s, const Se3& pose, bool is_camera_frame);
-  PoseEstimate estimate(double time_s, const Se3& pose, bool tracked);
+  PoseEstimate estimate(double time_s, const Se3& pose);
 
   SlamConfig config;
   Rig rig;
@@ -73,10 +111,23 @@ struct Slam::Impl {
   TrajectoryHistory history;
   Surroundings surroundings;
   LocalMap local;
+  TrackingHealth health;
   std::vector<int> tracked_landmarks;
   SlamSummary counters;
   bool begun = false;
-  int misses = 0;  ///< frames in a row that matched nothing
+  int anchor = -1;  ///< keyframe that poses are held against: last seen, or made
+  int misses = 0;   ///< frames in a row that matched nothing
+
+  /// A jump to a place recognised, until the next frames have confirmed it.
+  struct Jump {
+    double since_s = 0.0, until_s = 0.0;  ///< of the poses that were believed in vain
+    int keyframe = -1;
+    Se3 new_map_from_old_map;
+  };
+  std::optional<Jump> jump;
+
+  WallScan walls;  ///< of the frame at hand, where corners were of no use
+  std::vector<MotionLink> wall_links;
 };
 
 void Slam::Impl::begin(double time_s) {
@@ -91,9 +142,8 @@ void Slam::Impl::dead_reckon(double time_s) {
 }
 
 void Slam::Impl::remember_pose(double time_s, const Se3& pose, bool is_camera_frame) {
-  const int k = local.reference_keyframe;
-  const Se3 relative = k < 0 ? pose : map.keyframe(k).map_from_base.inverse() * pose;
-  history.add(time_s, k, relative, is_camera_frame);
+  const Se3 relative = anchor < 0 ? pose : map.keyframe(anchor).map_from_base.inverse() * pose;
+  history.add(time_s, anchor, relative, is_camera_frame);
 }
 
 TrackResult Slam::Impl::track(double time_s, const FeatureSet& features,
@@ -112,11 +162,14 @@ void Slam::Impl::recover(double time_s, const FeatureSet& features, TrackResult&
   const auto seed = static_cast<std::uint64_t>(counters.camera_frames);
   PlaceMatch found = match_place(map, local.landmarks, local.landmarks, features, motion.planar(),
                                  {.min_inliers = 2 * config.tracking.min_inliers, .seed = seed});
-  if (!found.accepted && misses % kSearchEverywhereEvery == 0) {
-    found = loops.relocalizer()
-                .find(map, features, motion.planar(), std::nullopt, {},
-                      {.min_inliers = config.localizer.relocalization_inliers, .seed = seed})
-                .match;
+  int keyframe = local.reference_keyframe;
+  const bool lost = health.state() == TrackingState::kLost;
+  if (!found.accepted && misses % (lost ? kSearchWhenLostEvery : kSearchEverywhereEvery) == 0) {
+    const Relocalization place = loops.relocalizer().find(
+        map, features, motion.planar(), std::nullopt, {},
+        {.min_inliers = config.localizer.relocalization_inliers, .seed = seed});
+    found = place.match;
+    keyframe = place.keyframe;
   }
   if (!found.accepted) return;
   result.status = TrackStatus::kTracked;
@@ -127,7 +180,31 @@ void Slam::Impl::recover(double time_s, const FeatureSet& features, TrackResult&
   const Se3& seen = found.solution.map_from_base;
   const double apart = (believed.prior.map_from_base.translation - seen.translation).norm();
   if (apart > kSurprisingM + 4.0 * believed.sigma_position_m) {
-    motion.place(time_s, seen, kFoundSigmaM, kFoundSigmaRad);
+    move_to(time_s, seen, believed.prior.map_from_base, keyframe);
+  }
+}
+
+void Slam::Impl::move_to(double time_s, const Se3& seen, const Se3& believed, int keyframe) {
+  const bool doubted = health.state() != TrackingState::kTracking;
+  const double since_s = jump ? jump->since_s : doubted ? health.doubted_since_s() : time_s;
+  jump = Jump{since_s, time_s, keyframe, seen * believed.inverse()};
+  motion.place(time_s, seen, kFoundSigmaM, kFoundSigmaRad);
+  motion.cut_link();
+  health.found_elsewhere();
+}
+
+/// What this frame says about the pose believed; a jump that is confirmed mends the poses before.
+void Slam::Impl::judge(double time_s, const FeatureSet& features, bool tracked, const Se3& pose) {
+  const bool plenty = static_cast<int>(features.size()) >= kPlenty;
+  health.update({.time_s = time_s,
+                 .tracked = tracked,
+                 .plenty = plenty,
+                 .view_is_mapped = !tracked && plenty && view_is_mapped(map, local, pose),
+                 .carried = motion.carried()});
+  if (!jump || health.state() == TrackingState::kConfirming) return;
+  if (health.state() == TrackingState::kTracking) {
+    history.reanchor(jump->since_s, jump->until_s, map, jump->keyframe, jump->new_map_from_old_map);
+    jump.reset();
   }
 }
 
@@ -138,6 +215,68 @@ void Slam::Impl::remember_tracked(const TrackResult& result) {
     ++map.landmark(m.landmark).tracked;
     tracked_landmarks.push_back(m.landmark);
   }
+}
+
+/// A rover that knows no corner in view still sees the walls of where it has just been.
+Se3 Slam::Impl::follow_walls(const CameraFrame& frame, const Se3& pose) {
+  if (!motion.planar() || frame.depth.empty() || health.state() == TrackingState::kLost) {
+    return pose;
+  }
+  walls = wall_scan(frame, camera, base_from_camera, config);
+  const WallMatch match = match_walls(placed_walls(last_keyframes()), walls, to_planar(pose),
+                                      motion.dead_reckoning().pose_covariance());
+  return is_convincing(match) ? motion.correct(match.look) : pose;
+}
+
+/// The keyframe at hand and those before it that may show the same walls.
+std::vector<int> Slam::Impl::last_keyframes() const {
+  std::vector<int> out;
+  for (int k = anchor; k >= 0 && k > anchor - kWallKeyframes; --k) out.push_back(k);
+  return out;
+}
+
+std::vector<PlacedWalls> Slam::Impl::placed_walls(const std::vector<int>& keyframes) const {
+  std::vector<PlacedWalls> out;
+  for (const int k : keyframes) {
+    out.push_back({&map.keyframe(k).walls, to_planar(map.keyframe(k).map_from_base)});
+  }
+  return out;
+}
+
+/// Ties a new keyframe to those before it by the walls they see in common.
+void Slam::Impl::link_walls(int keyframe, const std::vector<int>& earlier) {
+  const Keyframe& now = map.keyframe(keyframe);
+  for (const int k : earlier) {
+    const WallMatch match = match_walls(placed_walls({k}), now.walls, to_planar(now.map_from_base),
+                                        motion.dead_reckoning().pose_covariance());
+    if (!is_convincing(match)) continue;
+    MotionLink link = link_of(match, to_planar(map.keyframe(k).map_from_base));
+    link.from = k;
+    link.to = keyframe;
+    link.begin_s = map.keyframe(k).time_s;
+    link.end_s = now.time_s;
+    wall_links.push_back(link);
+  }
+}
+
+/// Tracked frames join where they show something new. A rover that sees nothing it knows still
+/// knows where it is: its frames join by dead reckoning, so that the map goes on behind a plain
+/// corridor, and a plain corridor itself becomes a chain of waypoints that the back end can bend.
+bool Slam::Impl::frame_joins_map(const TrackResult& result, const FeatureSet& features,
+                                 const Se3& pose) const {
+  if (map.keyframes().empty()) {
+    const auto with_depth = std::count_if(features.features().begin(), features.features().end(),
+                                          [](const Feature& f) { return f.depth_m > 0; });
+    return motion.planar() || with_depth >= kMinFirstFeatures;
+  }
+  if (!health.is_trusted()) return false;
+  if (result.status == TrackStatus::kTracked) {
+    return wants_keyframe(map, local, result, features, pose);
+  }
+  if (!motion.planar()) return false;
+  const Se3& last = map.keyframes().back().map_from_base;
+  const double spacing = keyframe_spacing(last, pose, config.tracking);
+  return spacing > kBlindSpacing;
 }
 
 void Slam::Impl::insert_keyframe(const CameraFrame& frame, FeatureSet features,
@@ -152,8 +291,15 @@ void Slam::Impl::insert_keyframe(const CameraFrame& frame, FeatureSet features,
   for (const FeatureMatch& m : result.matches) {
     k.landmark_of[static_cast<std::size_t>(m.feature)] = m.landmark;
   }
+  const bool blind = !walls.empty();
+  if (motion.planar()) {
+    k.walls = blind ? walls : wall_scan(frame, camera, base_from_camera, config);
+  }
+  const std::vector<int> earlier = last_keyframes();
   const int id = map.add_keyframe(std::move(k));
-  local.reference_keyframe = id;
+  motion.mark_keyframe(id, frame.time_s);
+  if (blind) link_walls(id, earlier);
+  local.reference_keyframe = anchor = id;
   tracked_landmarks.clear();
   for (const int l : map.keyframe(id).landmark_of) {
     if (l >= 0) tracked_landmarks.push_back(l);
@@ -163,13 +309,20 @@ void Slam::Impl::insert_keyframe(const CameraFrame& frame, FeatureSet features,
   look_for_loop(frame.time_s);
 }
 
+/// Everything that ties keyframes but corners: wheels with gyro, and walls.
+std::vector<MotionLink> Slam::Impl::links() const {
+  std::vector<MotionLink> all = motion.links();
+  all.insert(all.end(), wall_links.begin(), wall_links.end());
+  return all;
+}
+
 void Slam::Impl::look_for_loop(double time_s) {
   const MotionPrediction now = motion.predict(time_s);
   const int newest = static_cast<int>(map.keyframes().size()) - 1;
   const auto loop = loops.detect(map, {now.sigma_position_m, now.sigma_heading_rad});
   if (!loop || !config.loop.loop_closure) return;
   const Se3 before = map.keyframe(newest).map_from_base;
-  if (!close_loop(map, edges, *loop)) return;
+  if (!close_loop(map, edges, links(), *loop)) return;
   ++counters.loop_closures;
   motion.shift(map.keyframe(newest).map_from_base * before.inverse());
 }
@@ -178,11 +331,12 @@ void Slam::Impl::look_for_loop(double time_s) {
 void Slam::Impl::adjust_everything() {
   constexpr int kPasses = 2;  // the second without the sightings the first found wanting
   for (int pass = 0; pass < kPasses; ++pass) {
-    adjust_bundle(map, {}, {}, {.iterations = kFinalIterations, .on_floor = motion.planar()});
+    adjust_bundle(map, {}, motion.links(),
+                  {.iterations = kFinalIterations, .on_floor = motion.planar()});
   }
 }
 
-PoseEstimate Slam::Impl::estimate(double time_s, const Se3& pose, bool tracked) {
+PoseEstimate Slam::Impl::estimate(double time_s, const Se3& pose) {
   const MotionPrediction now = motion.predict(time_s);
   PoseEstimate e;
   e.time_s = time_s;
@@ -190,8 +344,20 @@ PoseEstimate Slam::Impl::estimate(double time_s, const Se3& pose, bool tracked) 
   e.sigma_position_m = now.sigma_position_m;
   e.sigma_heading_rad = now.sigma_heading_rad;
   const bool bounded = now.sigma_position_m < config.localizer.lost_sigma_m;
-  e.health = tracked ? Health::kOk : bounded ? Health::kDegraded : Health::kLost;
-  e.confidence = tracked ? 0.95 : bounded ? 0.6 : 0.0;
+  switch (health.state()) {
+    case TrackingState::kTracking:
+      e.health = Health::kOk;
+      e.confidence = 0.95;
+      break;
+    case TrackingState::kReckoning:
+    case TrackingState::kConfirming:
+      e.health = bounded ? Health::kDegraded : Health::kLost;
+      e.confidence = bounded ? 0.6 : 0.0;
+      break;
+    case TrackingState::kLost:
+      e.health = Health::kLost;
+      break;
+  }
   return e;
 }
 
@@ -202,28 +368,39 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
   if (!frame.gray.empty())
     features = extract_features(frame, camera, config.features, config.depth);
 
+  walls.clear();
   const TrackResult result = track(frame.time_s, features, prediction);
   const bool tracked = result.status == TrackStatus::kTracked;
   Se3 pose = prediction.prior.map_from_base;
   if (tracked) {
     pose = motion.correct(frame.time_s, result.solution);
+    anchor = local.reference_keyframe;
     remember_tracked(result);
+    if (result.solution.inliers < kFewInliers) pose = follow_walls(frame, pose);
   } else {
     motion.miss(frame.time_s);
     tracked_landmarks.clear();
+    pose = follow_walls(frame, pose);
   }
-  const auto with_depth = std::count_if(features.features().begin(), features.features().end(),
-                                        [](const Feature& f) { return f.depth_m > 0; });
-  const bool first = map.keyframes().empty() && with_depth >= kMinFirstFeatures;
-  if (first || (tracked && wants_keyframe(map, local, result, features, pose))) {
+  const bool first = map.keyframes().empty();
+    fprintf(stderr,
+            "t %.1f feat %zu local %zu matches %zu inl %d tracked %d state %d sig %.3f pose %.2f "
+            "%.2f %.2f kf %zu cal %.5f %.4f\n",
+            frame.time_s, features.size(), local.landmarks.size(), result.matches.size(),
+            result.solution.inliers, tracked, (int)health.state(), prediction.sigma_position_m,
+            pose.translation.x(), pose.translation.y(), to_planar(pose).phi, map.keyframes().size(),
+            motion.dead_reckoning().calibration()(0), motion.dead_reckoning().calibration()(1));
+  judge(frame.time_s, features, tracked, pose);
+  if (!frame.gray.empty() && frame_joins_map(result, features, pose)) {
     insert_keyframe(frame, std::move(features), result, pose);
-    pose = map.keyframe(local.reference_keyframe).map_from_base;  // a loop may have moved it
+    pose = map.keyframe(anchor).map_from_base;  // a loop may have moved it
   }
   remember_pose(frame.time_s, pose, true);
-  surroundings.look(frame, map, local.reference_keyframe, pose);
+  if (health.is_trusted()) surroundings.look(frame, map, anchor, pose);
   ++counters.camera_frames;
-  counters.tracked_frames += tracked || first;
-  return estimate(frame.time_s, pose, tracked || first);
+  counters.tracked_frames += tracked && health.state() == TrackingState::kTracking;
+  if (first && !map.keyframes().empty()) ++counters.tracked_frames;
+  return estimate(frame.time_s, pose);
 }
 
 Slam::Slam(const SlamConfig& config, const Rig& rig) : impl_(std::make_unique<Impl>(config, rig)) {}

@@ -82,7 +82,7 @@ PoseGraphEdge false_loop(std::mt19937_64& random) {
 TEST(PoseGraphProperty, TrueLoopsTakeTheDriftOut) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Graph g = square(seed);
-    const PoseGraphResult r = optimize_pose_graph(g.drifted, g.edges, 30);
+    const PoseGraphResult r = optimize_pose_graph({g.drifted, g.edges, {}}, {}, 30);
     ASSERT_TRUE(r.converged);
     EXPECT_LT(rmse(r.poses, g.truth), 0.05) << "seed " << seed;
     EXPECT_LT(rmse(r.poses, g.truth), 0.5 * rmse(g.drifted, g.truth)) << "seed " << seed;
@@ -92,7 +92,7 @@ TEST(PoseGraphProperty, TrueLoopsTakeTheDriftOut) {
 TEST(PoseGraphProperty, PlantedFalseLoopsDoNotBendTheMap) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Graph g = square(seed);
-    const double without = rmse(optimize_pose_graph(g.drifted, g.edges, 30).poses, g.truth);
+    const double without = rmse(optimize_pose_graph({g.drifted, g.edges, {}}, {}, 30).poses, g.truth);
     std::mt19937_64 random(seed);
     const std::size_t honest = g.edges.size();
     for (int i = 0; i < 4; ++i) {
@@ -104,7 +104,7 @@ TEST(PoseGraphProperty, PlantedFalseLoopsDoNotBendTheMap) {
       g.edges.push_back(e);
     }
     ASSERT_GT(g.edges.size(), honest) << "seed " << seed;
-    const PoseGraphResult r = optimize_pose_graph(g.drifted, g.edges, 60);
+    const PoseGraphResult r = optimize_pose_graph({g.drifted, g.edges, {}}, {}, 60);
     ASSERT_TRUE(r.converged);
     EXPECT_LT(rmse(r.poses, g.truth), without + 0.03) << "seed " << seed;
     for (std::size_t i = honest; i < g.edges.size(); ++i) {
@@ -115,8 +115,8 @@ TEST(PoseGraphProperty, PlantedFalseLoopsDoNotBendTheMap) {
 
 TEST(PoseGraphProperty, TheSameGraphGivesTheSameBits) {
   const Graph g = square(3);
-  const PoseGraphResult a = optimize_pose_graph(g.drifted, g.edges, 20);
-  const PoseGraphResult b = optimize_pose_graph(g.drifted, g.edges, 20);
+  const PoseGraphResult a = optimize_pose_graph({g.drifted, g.edges, {}}, {}, 20);
+  const PoseGraphResult b = optimize_pose_graph({g.drifted, g.edges, {}}, {}, 20);
   for (std::size_t i = 0; i < a.poses.size(); ++i) {
     EXPECT_EQ(a.poses[i].translation, b.poses[i].translation);
     EXPECT_EQ(a.poses[i].rotation, b.poses[i].rotation);
@@ -125,7 +125,7 @@ TEST(PoseGraphProperty, TheSameGraphGivesTheSameBits) {
 
 TEST(PoseGraphProperty, AnEmptyGraphChangesNothing) {
   EXPECT_TRUE(optimize_pose_graph({}, {}, 10).poses.empty());
-  EXPECT_EQ(optimize_pose_graph({Se3{}}, {}, 10).poses.size(), 1u);
+  EXPECT_EQ(optimize_pose_graph({{Se3{}}, {}, {}}, {}, 10).poses.size(), 1u);
 }
 
 }  // namespace
