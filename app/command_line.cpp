@@ -20,14 +20,15 @@ void add_common(CLI::App& command, CommonOptions& options) {
   command.add_option("--config", options.config, "YAML file with settings (see `rovigo config`)");
   command.add_option("--set", options.set, "One setting, e.g. robot.max_speed_m_s=0.3; repeatable")
       ->type_name("KEY=VALUE")
-      ->expected(1);
+      ->allow_extra_args(false);
   command.add_flag("--json", options.json, "Print one JSON object on stdout instead of words");
 }
 
 void add_route(CLI::App& command, RouteRequest& route) {
   command.add_option("--start", route.start, "X,Y[,YAW]; default: the recording's first pose");
   command.add_option("--goal", route.goal, "X,Y[,YAW] in metres and radians, map frame");
-  command.add_option("--via", route.via, "X,Y to pass on the way; repeatable")->expected(1);
+  command.add_option("--via", route.via, "X,Y to pass on the way; repeatable")
+      ->allow_extra_args(false);
   command.add_option("--order", route.order, "Order of the stops: given or shortest")
       ->check(CLI::IsMember({"given", "shortest"}));
   command.add_option("--planner", route.planner, "astar, rrtconnect or rrtstar");

@@ -1,6 +1,7 @@
 #include "maps/export.h"
 
 #include <array>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "maps/atomic_file.h"
@@ -90,7 +91,14 @@ void export_simplemap(const SavedMap& map, const fs::path& output, const ExportC
     const StoredKeyframe& k = map.keyframes[i++];
     view = {k.map_from_base, k.time_s, 0, 0, {}, k.color_jpeg};
     if (k.depth_png.empty()) return true;
-    const cv::Mat depth = decode_depth(k);
+    // Readers of a simplemap expect depth pixel for pixel over the camera's image.
+    const auto& camera = map.metadata.camera;
+    cv::Mat depth = decode_depth(k);
+    if (camera.ncols > 0 && camera.nrows > 0) {
+      cv::resize(depth, depth,
+                 cv::Size(static_cast<int>(camera.ncols), static_cast<int>(camera.nrows)), 0, 0,
+                 cv::INTER_NEAREST);
+    }
     view.width = depth.cols;
     view.height = depth.rows;
     view.depth_mm.assign(depth.begin<std::uint16_t>(), depth.end<std::uint16_t>());

@@ -23,7 +23,8 @@ struct StoredKeyframe {
   double time_s = 0.0;  ///< recording time
   mrpt::poses::CPose3D map_from_base;
   Blob color_jpeg;
-  Blob depth_png;  ///< 16-bit, 1 mm per unit, 0 = no return
+  Blob depth_png;  ///< 16-bit, 1 mm per unit, 0 = no return; may be a whole fraction of the
+                   ///< camera's size
   Blob features;   ///< opaque outside slam
 };
 

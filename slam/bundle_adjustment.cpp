@@ -25,6 +25,7 @@ using Step = std::array<double, 6>;
 /// One sighting: pixel and depth error of a landmark in a keyframe, with exact derivatives.
 class SightingError final : public ceres::SizedCostFunction<3, 6, 3> {
  public:
+  /// `origin`, `camera` and `camera_from_base` must outlive this.
   SightingError(const Se3& origin, const Feature& feature, const MeasurementNoise& noise,
                 const CameraModel& camera, const Se3& camera_from_base)
       : origin_(origin),
@@ -72,7 +73,7 @@ class SightingError final : public ceres::SizedCostFunction<3, 6, 3> {
   }
 
  private:
-  Se3 origin_;
+  const Se3& origin_;
   Eigen::Vector2d pixel_;
   double depth_m_;
   MeasurementNoise noise_;
@@ -104,28 +105,24 @@ class Bundle {
         is_free_(map.keyframes().size(), keyframes.empty() ? 1 : 0) {
     for (const int k : keyframes) is_free_[static_cast<std::size_t>(k)] = 1;
     if (!is_free_.empty()) is_free_[0] = 0;  // the map's frame hangs on it
+    for (const Keyframe& k : map.keyframes()) origins_.push_back(k.map_from_base);
   }
 
   int add_sightings() {
-    const auto noise_for = [&](const Feature& f) { return noise_of(f, map_.config()); };
     int count = 0;
-    for (std::size_t id = 0; id < map_.landmarks().size(); ++id) {
-      Landmark& l = map_.landmark(static_cast<int>(id));
-      if (!l.alive || l.sightings.size() < config_.min_sightings) continue;
-      const bool concerned = std::any_of(l.sightings.begin(), l.sightings.end(), [&](auto& s) {
-        return is_free_[static_cast<std::size_t>(s.keyframe)] != 0;
-      });
-      if (!concerned) continue;
+    for (const int id : chosen_landmarks()) {
+      Landmark& l = map_.landmark(id);
       for (const Sighting& s : l.sightings) {
         const Keyframe& k = map_.keyframe(s.keyframe);
         const Feature& f = k.features[static_cast<std::size_t>(s.feature)];
         problem_.AddResidualBlock(
-            new SightingError(k.map_from_base, f, noise_for(f), map_.camera(), camera_from_base_),
-            new ceres::HuberLoss(kKernel), step(s.keyframe), l.position_map.data());
+            new SightingError(origin(s.keyframe), f, noise_of(f, map_.config()), map_.camera(),
+                              camera_from_base_),
+            &kernel_, step(s.keyframe), l.position_map.data());
         ++count;
       }
       ordering_->AddElementToGroup(l.position_map.data(), 0);
-      used_.push_back(static_cast<int>(id));
+      used_.push_back(id);
     }
     return count;
   }
@@ -134,10 +131,9 @@ class Bundle {
     const TrackingConfig& t = map_.config().tracking;
     for (const Keyframe& k : map_.keyframes()) {
       if (!problem_.HasParameterBlock(step(k.id))) continue;
-      problem_.AddResidualBlock(
-          new ceres::AutoDiffCostFunction<FloorError, 3, 6>(
-              new FloorError{k.map_from_base, t.plane_height_sigma_m, t.plane_tilt_sigma_rad}),
-          nullptr, step(k.id));
+      problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<FloorError, 3, 6>(new FloorError{
+                                    origin(k.id), t.plane_height_sigma_m, t.plane_tilt_sigma_rad}),
+                                nullptr, step(k.id));
     }
   }
 
@@ -147,10 +143,8 @@ class Bundle {
                              is_free_[static_cast<std::size_t>(l.to)] != 0;
       if (concerned) links_.push_back(l);
     }
-    std::vector<Se3> poses;
-    for (const Keyframe& k : map_.keyframes()) poses.push_back(k.map_from_base);
     link_errors_.emplace(links_, map_.config().dead_reckoning);
-    link_errors_->add_to(problem_, poses, [this](int keyframe) { return step(keyframe); });
+    link_errors_->add_to(problem_, origins_, [this](int keyframe) { return step(keyframe); });
     for (auto& c : link_errors_->calibrations()) ordering_->AddElementToGroup(c.data(), 1);
   }
 
@@ -176,16 +170,25 @@ class Bundle {
   }
 
   void apply() {
-    for (const Keyframe& k : map_.keyframes()) {
-      const Eigen::Map<const Vector6d> moved(step(k.id));
-      if (moved.isZero(0.0)) continue;
-      map_.keyframe(k.id).map_from_base = normalized(retract(k.map_from_base, moved));
+    std::vector<Se3> moved = origins_;
+    for (std::size_t k = 0; k < moved.size(); ++k) {
+      const Eigen::Map<const Vector6d> by(steps_[k].data());
+      if (!by.isZero(0.0)) moved[k] = normalized(retract(moved[k], by));
+    }
+    std::vector<Eigen::Vector3d> solved;
+    for (const int id : used_) solved.push_back(map_.landmark(id).position_map);
+    map_.move_keyframes(moved);  // landmarks that were not asked follow the view that made them
+    for (std::size_t i = 0; i < used_.size(); ++i) {
+      map_.landmark(used_[i]).position_map = solved[i];
     }
   }
 
   /// Landmarks keep only sightings that fit, and learn how well they are known.
   int settle_landmarks() {
     int rejected = 0;
+    for (std::size_t k = 0; k < origins_.size(); ++k) {
+      origins_[k] = map_.keyframe(static_cast<int>(k)).map_from_base;
+    }
     for (const int id : used_) {
       Landmark& l = map_.landmark(id);
       Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
@@ -193,7 +196,7 @@ class Bundle {
         const Sighting s = l.sightings[i];
         const Keyframe& k = map_.keyframe(s.keyframe);
         const Feature& f = k.features[static_cast<std::size_t>(s.feature)];
-        const SightingError error(k.map_from_base, f, noise_of(f, map_.config()), map_.camera(),
+        const SightingError error(origin(s.keyframe), f, noise_of(f, map_.config()), map_.camera(),
                                   camera_from_base_);
         const Step zero{};
         const double* parameters[] = {zero.data(), l.position_map.data()};
@@ -217,17 +220,53 @@ class Bundle {
   }
 
  private:
+  /// Living landmarks that a free keyframe sees; the best seen ones first, until every view has
+  /// enough. What the rest would add is not worth its time and memory.
+  std::vector<int> chosen_landmarks() const {
+    std::vector<int> candidates;
+    for (std::size_t id = 0; id < map_.landmarks().size(); ++id) {
+      const Landmark& l = map_.landmarks()[id];
+      const bool concerned = std::any_of(l.sightings.begin(), l.sightings.end(), [&](auto& s) {
+        return is_free_[static_cast<std::size_t>(s.keyframe)] != 0;
+      });
+      if (l.alive && concerned && l.sightings.size() >= config_.min_sightings) {
+        candidates.push_back(static_cast<int>(id));
+      }
+    }
+    std::stable_sort(candidates.begin(), candidates.end(), [&](int a, int b) {
+      return map_.landmark(a).sightings.size() > map_.landmark(b).sightings.size();
+    });
+    std::vector<int> in_view(map_.keyframes().size(), 0), chosen;
+    for (const int id : candidates) {
+      const auto& sightings = map_.landmark(id).sightings;
+      const bool wanted = std::any_of(sightings.begin(), sightings.end(), [&](auto& s) {
+        return in_view[static_cast<std::size_t>(s.keyframe)] < config_.landmarks_per_view;
+      });
+      if (!wanted) continue;
+      chosen.push_back(id);
+      for (const Sighting& s : sightings) ++in_view[static_cast<std::size_t>(s.keyframe)];
+    }
+    return chosen;
+  }
+
+  const Se3& origin(int keyframe) const { return origins_[static_cast<std::size_t>(keyframe)]; }
   double* step(int keyframe) { return steps_[static_cast<std::size_t>(keyframe)].data(); }
 
   LandmarkMap& map_;
   BundleConfig config_;
   Se3 camera_from_base_;
   std::vector<Step> steps_;
+  std::vector<Se3> origins_;  ///< the poses that the steps step away from
   std::vector<std::uint8_t> is_free_;
   std::vector<int> used_;
   std::vector<MotionLink> links_;
   std::optional<LinkErrors> link_errors_;
-  ceres::Problem problem_;
+  ceres::HuberLoss kernel_{kKernel};
+  ceres::Problem problem_{[] {
+    ceres::Problem::Options options;
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    return options;
+  }()};
   std::shared_ptr<ceres::ParameterBlockOrdering> ordering_ =
       std::make_shared<ceres::ParameterBlockOrdering>();
 };

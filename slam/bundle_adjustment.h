@@ -12,6 +12,7 @@ struct BundleConfig {
   int iterations = 10;
   bool on_floor = false;          ///< keyframes keep to the plane within tracking's plane sigmas
   std::size_t min_sightings = 2;  ///< landmarks seen less often constrain nothing
+  int landmarks_per_view = 150;   ///< enough for a pose; the best seen are taken
 };
 
 struct BundleResult {

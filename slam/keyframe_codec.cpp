@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <string>
 
 #include "maps/error.h"
@@ -121,20 +122,28 @@ maps::Blob encode_color(const cv::Mat& color) {
 maps::Blob encode_depth(const CameraFrame& frame) {
   maps::Blob out;
   if (frame.depth.empty()) return out;
+  cv::Mat thinned((frame.depth.rows + 1) / 2, (frame.depth.cols + 1) / 2, CV_16UC1);
+  for (int v = 0; v < thinned.rows; ++v) {
+    const auto* from = frame.depth.ptr<std::uint16_t>(2 * v);
+    auto* to = thinned.ptr<std::uint16_t>(v);
+    for (int u = 0; u < thinned.cols; ++u) to[u] = from[2 * u];
+  }
   cv::Mat millimetres;
-  frame.depth.convertTo(millimetres, CV_16U, frame.depth_unit_m * 1000.0);
+  thinned.convertTo(millimetres, CV_16U, frame.depth_unit_m * 1000.0);
   cv::imencode(".png", millimetres, out, {cv::IMWRITE_PNG_COMPRESSION, 1});
   out.shrink_to_fit();
   return out;
 }
 
-cv::Mat decode_depth(const maps::Blob& png) {
+cv::Mat decode_depth(const maps::Blob& png, const cv::Size& size) {
   cv::Mat depth;
   if (!png.empty()) depth = cv::imdecode(png, cv::IMREAD_UNCHANGED);
   if (depth.empty() || depth.type() != CV_16UC1) {
     throw maps::InputError("A keyframe's depth image cannot be read: it is not a 16-bit PNG.");
   }
-  return depth;
+  cv::Mat full;
+  cv::resize(depth, full, size, 0, 0, cv::INTER_NEAREST);
+  return full;
 }
 
 }  // namespace rovigo::slam

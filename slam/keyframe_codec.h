@@ -30,9 +30,11 @@ maps::Blob encode_features(const std::vector<StoredFeature>& features);
 std::vector<StoredFeature> decode_features(const maps::Blob& blob);
 
 maps::Blob encode_color(const cv::Mat& color);
-/// 16-bit PNG, 1 mm a unit.
+/// 16-bit PNG, 1 mm a unit, of every second pixel in both directions: clouds and grids made from
+/// it lose nothing that shows, and a map file is a third as large.
 maps::Blob encode_depth(const CameraFrame& frame);
-/// Throws InputError when the blob is not a 16-bit image.
-cv::Mat decode_depth(const maps::Blob& png);
+/// Brought back to `size` by repeating pixels. Throws InputError when the blob is not a 16-bit
+/// image.
+cv::Mat decode_depth(const maps::Blob& png, const cv::Size& size);
 
 }  // namespace rovigo::slam

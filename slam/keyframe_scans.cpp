@@ -51,7 +51,7 @@ std::vector<KeyframeScan> scans_of_keyframes(const LandmarkMap& map, DepthScanne
   std::vector<std::pair<int, cv::Mat>> views;
   for (const Keyframe& k : map.keyframes()) {
     if (k.depth_png.empty()) continue;
-    views.emplace_back(k.id, decode_depth(k.depth_png));
+    views.emplace_back(k.id, decode_depth(k.depth_png, {map.camera().width(), map.camera().height()}));
     add_heights(views.back().second, k.map_from_base * map.base_from_camera(), map, heights);
   }
   const double floor = estimate_floor_height(heights);

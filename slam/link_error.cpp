@@ -72,7 +72,7 @@ struct NominalError {
 }  // namespace
 
 LinkErrors::LinkErrors(const std::vector<MotionLink>& links, const DeadReckoningConfig& config)
-    : links_(links), config_(config) {
+    : links_(links), config_(config), kernel_(kKernel) {
   if (links_.empty()) return;
   begin_s_ = links_.front().begin_s;
   for (const MotionLink& l : links_) begin_s_ = std::min(begin_s_, l.begin_s);
@@ -94,7 +94,7 @@ void LinkErrors::add_to(ceres::Problem& problem, const std::vector<Se3>& poses,
     const auto from = static_cast<std::size_t>(l.from), to = static_cast<std::size_t>(l.to);
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<LinkError, 3, 6, 6, 3>(
                                  new LinkError(l, poses[from], poses[to])),
-                             new ceres::CauchyLoss(kKernel), step_of(l.from), step_of(l.to),
+                             &kernel_, step_of(l.from), step_of(l.to),
                              calibrations_[block_of(l)].data());
   }
   if (!links_.empty()) add_walks(problem);

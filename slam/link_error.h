@@ -12,8 +12,9 @@
 
 namespace rovigo::slam {
 
-/// Adds motion links to a problem over keyframe steps. The calibration drifts: one block for each
-/// minute of the recording, tied to the next by how far a minute may move it.
+/// Adds motion links to a problem (which must not own its loss functions) over keyframe steps. The
+/// calibration drifts: one block for each minute of the recording, tied to the next by how far a
+/// minute may move it.
 class LinkErrors {
  public:
   using StepOf = std::function<double*(int keyframe)>;
@@ -31,6 +32,7 @@ class LinkErrors {
 
   const std::vector<MotionLink>& links_;
   DeadReckoningConfig config_;
+  ceres::CauchyLoss kernel_;
   double begin_s_ = 0.0;
   std::vector<std::array<double, 3>> calibrations_;
 };

@@ -61,13 +61,15 @@ PoseGraphResult optimize_pose_graph(const PoseGraph& graph, const DeadReckoningC
   if (poses.empty() || edges.empty()) return result;
   std::vector<std::array<double, 6>> steps(poses.size(), std::array<double, 6>{});
   LinkErrors links(graph.links, wheels);
-  ceres::Problem problem;
+  ceres::CauchyLoss loop_kernel(kLoopKernel);
+  ceres::Problem::Options shared_losses;
+  shared_losses.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(shared_losses);
   for (const PoseGraphEdge& e : edges) {
     const auto from = static_cast<std::size_t>(e.from), to = static_cast<std::size_t>(e.to);
     auto* cost = new ceres::AutoDiffCostFunction<EdgeError, 6, 6, 6>(
         new EdgeError(e, poses[from], poses[to]));
-    ceres::LossFunction* loss =
-        e.kind == maps::StoredEdge::Kind::kLoop ? new ceres::CauchyLoss(kLoopKernel) : nullptr;
+    ceres::LossFunction* loss = e.kind == maps::StoredEdge::Kind::kLoop ? &loop_kernel : nullptr;
     problem.AddResidualBlock(cost, loss, steps[from].data(), steps[to].data());
   }
   links.add_to(problem, poses,

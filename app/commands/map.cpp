@@ -1,5 +1,6 @@
 // rovigo map and rovigo localize: a recording in; a map file, or poses in one, out.
 
+#include <malloc.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <sys/resource.h>
 
@@ -34,6 +35,10 @@ double peak_rss_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
+// Images come and go between what is kept: glibc's heap would grow to more than twice of what is in
+// use. Every so many observations what lies free goes back to the system.
+constexpr int kTrimEvery = 500;
+
 /// What reading a whole recording showed, whatever it was read for.
 struct Reading {
   std::vector<double> frame_times_s;
@@ -48,11 +53,13 @@ Reading read_all(slam::RecordingReader& reader, const std::string& label, const 
   Reading reading;
   Progress progress(label);
   const double cpu_before = cpu_seconds();
+  int taken = 0;
   while (const auto observation = reader.next()) {
     if (IS_CLASS(*observation, mrpt::obs::CObservation3DRangeScan)) {
       reading.frame_times_s.push_back(mrpt::Clock::toDouble(observation->timestamp));
     }
     take(*observation);
+    if (++taken % kTrimEvery == 0) malloc_trim(0);
     progress.update(reader.progress());
   }
   const double cpu = cpu_seconds() - cpu_before;

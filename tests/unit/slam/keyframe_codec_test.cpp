@@ -79,13 +79,27 @@ TEST(KeyframeCodec, DepthIsStoredInMillimetres) {
   CameraFrame frame;
   frame.depth = cv::Mat(48, 64, CV_16UC1, cv::Scalar(10000));
   frame.depth_unit_m = 1.0 / 5000.0;  // TUM's
-  const cv::Mat back = decode_depth(encode_depth(frame));
+  const cv::Mat back = decode_depth(encode_depth(frame), frame.depth.size());
+  EXPECT_EQ(back.size(), frame.depth.size());
   EXPECT_EQ(back.at<std::uint16_t>(10, 10), 2000);
 }
 
+TEST(KeyframeCodec, EverySecondPixelOfADepthImageIsKept) {
+  CameraFrame frame;
+  frame.depth.create(5, 7, CV_16UC1);
+  for (int i = 0; i < 35; ++i)
+    frame.depth.at<std::uint16_t>(i / 7, i % 7) = static_cast<std::uint16_t>(100 + i);
+  const cv::Mat back = decode_depth(encode_depth(frame), {8, 6});
+  for (int v = 0; v < 6; v += 2) {
+    for (int u = 0; u < 8; u += 2) {
+      EXPECT_EQ(back.at<std::uint16_t>(v, u), 100 + 7 * v + u);
+    }
+  }
+}
+
 TEST(KeyframeCodec, ADepthImageThatIsNoPngIsRefused) {
-  EXPECT_THROW(decode_depth({1, 2, 3}), maps::InputError);
-  EXPECT_THROW(decode_depth({}), maps::InputError);
+  EXPECT_THROW(decode_depth({1, 2, 3}, {8, 6}), maps::InputError);
+  EXPECT_THROW(decode_depth({}, {8, 6}), maps::InputError);
 }
 
 }  // namespace
