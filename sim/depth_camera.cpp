@@ -5,12 +5,14 @@
 #include <vector>
 
 #include "maps/geometry.h"
+#include "sim/glossy_floor.h"
 
 namespace rovigo::sim {
 namespace {
 
 constexpr std::uint64_t kColorStream = 1;
 constexpr std::uint64_t kDepthStream = 2;
+constexpr std::uint64_t kFloorStream = 3;
 constexpr int kThreads = 1;
 
 /// Mean of `length` pixels around each (length >= 1, not an integer), along a row of triples.
@@ -40,12 +42,17 @@ void blur_row(const float* in, int width, float length, std::vector<float>& sums
 
 }  // namespace
 
-DepthCamera::DepthCamera(const WorldModel& world, const CameraNoise& noise,
+DepthCamera::DepthCamera(const WorldModel& world, const CameraNoise& noise, const FloorGloss& floor,
                          const mrpt::img::TCamera& intrinsics, std::uint64_t seed)
-    : noise_(noise), intrinsics_(intrinsics), seed_(seed), renderer_(world) {}
+    : noise_(noise), floor_(floor), intrinsics_(intrinsics), seed_(seed), renderer_(world) {}
 
 mrpt::obs::CObservation3DRangeScan::Ptr DepthCamera::take(const Shot& shot) {
-  renderer_.render(shot.world_from_camera, intrinsics_, kThreads, view_);
+  renderer_.render({.world_from_camera = shot.world_from_camera,
+                    .camera = intrinsics_,
+                    .movers = shot.movers,
+                    .mirror = floor_.mirror,
+                    .threads = kThreads},
+                   view_);
   auto obs = mrpt::obs::CObservation3DRangeScan::Create();
   obs->sensorLabel = "camera";
   obs->hasRangeImage = true;
@@ -119,6 +126,9 @@ void DepthCamera::measure_depth(const Shot& shot, mrpt::math::CMatrix_u16& range
   const int reach = static_cast<int>(std::ceil(noise_.edge_raggedness_px));
   constexpr float kEdgeShare = 0.05F;  // a step of more than this share of the depth is an edge
   const std::uint64_t stream = derive_seed(derive_seed(seed_, kDepthStream), shot.index);
+  const PixelRays rays = pixel_rays(shot.world_from_camera, intrinsics_);
+  const GlossyFloor floor(floor_, rays, view_, derive_seed(seed_, kFloorStream),
+                          derive_seed(stream, kFloorStream));
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
@@ -126,9 +136,21 @@ void DepthCamera::measure_depth(const Shot& shot, mrpt::math::CMatrix_u16& range
       std::uint16_t& out = range_mm(y, x);
       out = 0;
       float z = view_.depth_m[i];
-      if (shot.covered || !(view_.cos_incidence[i] >= min_cosine)) continue;
+      if (shot.covered) continue;
+      bool from_image = false;
+      float wave_m = 0.0F;
+      if (floor.is_at(i)) {
+        const auto reading = floor.at(x, y);
+        from_image = reading.from_image;
+        if (!(reading.depth_m > 0.0F)) continue;
+        if (from_image) z = reading.depth_m;
+        if (!from_image) wave_m = reading.depth_m - z;
+      }
+      // The mirror image is matched however grazing the view of the mirror is.
+      if (!from_image && !(view_.cos_incidence[i] >= min_cosine)) continue;
       const std::uint64_t bits = scramble(stream + i);
-      if (reach > 0) {  // matching windows straddle edges: the other side's depth, or nothing
+      if (reach > 0 &&
+          !from_image) {  // matching windows straddle edges: the other side's depth, or nothing
         const int span = 2 * reach + 1;
         const int dx = static_cast<int>((bits >> 40U) % static_cast<unsigned>(span)) - reach;
         const int dy = static_cast<int>((bits >> 48U) % static_cast<unsigned>(span)) - reach;
@@ -140,8 +162,10 @@ void DepthCamera::measure_depth(const Shot& shot, mrpt::math::CMatrix_u16& range
         if (!(std::abs(other - z) <= kEdgeShare * z)) {
           if ((bits >> 60U) < 6) continue;
           z = other;
+          wave_m = 0.0F;
         }
       }
+      z += wave_m;
       if (!(z >= min_m && z <= max_m)) continue;
       float disparity = fb / z + sigma_px * gaussian_(bits);
       if (quantum > 0.0F) disparity = quantum * std::floor(disparity / quantum + 0.5F);

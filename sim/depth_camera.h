@@ -20,11 +20,12 @@ struct Shot {
   double interval_s = 1.0 / 30.0;          ///< since the previous shot
   double light = 1.0;                      ///< 1: as the world was lit when it was made
   bool covered = false;                    ///< something lies on the lenses
+  std::vector<Mover> movers = {};          ///< people
 };
 
 class DepthCamera {
  public:
-  DepthCamera(const WorldModel& world, const CameraNoise& noise,
+  DepthCamera(const WorldModel& world, const CameraNoise& noise, const FloorGloss& floor,
               const mrpt::img::TCamera& intrinsics, std::uint64_t seed);
 
   /// Shots are to be taken in order: auto exposure follows them.
@@ -35,6 +36,7 @@ class DepthCamera {
   void measure_depth(const Shot& shot, mrpt::math::CMatrix_u16& range_mm) const;
 
   CameraNoise noise_;
+  FloorGloss floor_;
   mrpt::img::TCamera intrinsics_;
   std::uint64_t seed_;
   Renderer renderer_;

@@ -17,4 +17,11 @@ PixelRays pixel_rays(const mrpt::poses::CPose3D& world_from_camera,
   return rays;
 }
 
+PixelRays mirrored(const PixelRays& rays, double floor_z_m) {
+  PixelRays out = rays;
+  out.origin.z() = 2.0 * floor_z_m - rays.origin.z();
+  for (auto* direction : {&out.d0, &out.dx, &out.dy}) direction->z() = -direction->z();
+  return out;
+}
+
 }  // namespace rovigo::sim

@@ -20,4 +20,7 @@ struct PixelRays {
 PixelRays pixel_rays(const mrpt::poses::CPose3D& world_from_camera,
                      const mrpt::img::TCamera& camera);
 
+/// The same rays as a mirror at height `floor_z_m` sends them on: they come from below the floor.
+PixelRays mirrored(const PixelRays& rays, double floor_z_m);
+
 }  // namespace rovigo::sim

@@ -21,6 +21,17 @@ RayScene::RayScene(const std::vector<Quad>& quads) : impl_(std::make_unique<Impl
   const bool has_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   impl_->device = rtcNewDevice(has_avx2 ? "threads=1,isa=avx2" : "threads=1,isa=sse4.2");
   if (!impl_->device) throw std::runtime_error("Embree does not start on this processor");
+  build(quads, false);
+}
+
+RayScene::RayScene(const std::vector<Quad>& quads, const RayScene& device_of)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->device = device_of.impl_->device;
+  rtcRetainDevice(impl_->device);
+  build(quads, true);
+}
+
+void RayScene::build(const std::vector<Quad>& quads, bool often) {
   impl_->scene = rtcNewScene(impl_->device);
   RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_QUAD);
   auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
@@ -40,46 +51,83 @@ RayScene::RayScene(const std::vector<Quad>& quads) : impl_(std::make_unique<Impl
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(impl_->scene, geometry);
   rtcReleaseGeometry(geometry);
-  rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
+  rtcSetSceneBuildQuality(impl_->scene, often ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_HIGH);
   rtcCommitScene(impl_->scene);
 }
 
 RayScene::~RayScene() = default;
 
-void RayScene::cast_row(const Eigen::Vector3f& origin, const Eigen::Vector3f& first,
-                        const Eigen::Vector3f& step, int count, float max_t, std::uint32_t* quad,
-                        float* t) const {
+namespace {
+
+/// Rays begin .. end - 1 in packets of eight. `far_t(x)` is where a ray ends; `on_hit(x, quad, t)`
+/// is called for rays that met something, `on_miss(x)` for the others.
+template <class FarT, class OnHit, class OnMiss>
+void cast(RTCScene scene, const RayRow& row, int begin, int end, const FarT& far_t,
+          const OnHit& on_hit, const OnMiss& on_miss) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   alignas(32) int valid[8];
   RTCRayHit8 packet;
-  for (int start = 0; start < count; start += 8) {
-    const int used = std::min(8, count - start);
+  for (int start = begin; start < end; start += 8) {
+    const int used = std::min(8, end - start);
+    bool any = false;
     for (int i = 0; i < 8; ++i) {
+      const int column = std::min(start + i, end - 1);
       const auto x = static_cast<float>(start + i);
-      valid[i] = i < used ? -1 : 0;
-      packet.ray.org_x[i] = origin.x();
-      packet.ray.org_y[i] = origin.y();
-      packet.ray.org_z[i] = origin.z();
-      packet.ray.dir_x[i] = first.x() + x * step.x();
-      packet.ray.dir_y[i] = first.y() + x * step.y();
-      packet.ray.dir_z[i] = first.z() + x * step.z();
-      packet.ray.tnear[i] = 1e-3F;
-      packet.ray.tfar[i] = max_t;
+      const float near_t = row.min_t ? row.min_t[column] : 1e-3F;
+      valid[i] = i < used && near_t >= 0.0F ? -1 : 0;
+      any |= valid[i] != 0;
+      packet.ray.org_x[i] = row.origin.x();
+      packet.ray.org_y[i] = row.origin.y();
+      packet.ray.org_z[i] = row.origin.z();
+      packet.ray.dir_x[i] = row.first.x() + x * row.step.x();
+      packet.ray.dir_y[i] = row.first.y() + x * row.step.y();
+      packet.ray.dir_z[i] = row.first.z() + x * row.step.z();
+      packet.ray.tnear[i] = near_t;
+      packet.ray.tfar[i] = far_t(column);
       packet.ray.time[i] = 0.0F;
       packet.ray.mask[i] = 0xFFFFFFFFU;
       packet.ray.flags[i] = 0;
-      packet.hit.primID[i] = kMiss;
-      packet.hit.geomID[i] = kMiss;
-      packet.hit.instID[0][i] = kMiss;
+      packet.hit.primID[i] = RayScene::kMiss;
+      packet.hit.geomID[i] = RayScene::kMiss;
+      packet.hit.instID[0][i] = RayScene::kMiss;
     }
-    rtcIntersect8(valid, impl_->scene, &context, &packet);
+    if (any) rtcIntersect8(valid, scene, &context, &packet);
     for (int i = 0; i < used; ++i) {
-      quad[start + i] = packet.hit.geomID[i] == kMiss ? kMiss : packet.hit.primID[i];
-      t[start + i] = packet.ray.tfar[i];
+      if (packet.hit.geomID[i] == RayScene::kMiss) {
+        on_miss(start + i);
+      } else {
+        on_hit(start + i, packet.hit.primID[i], packet.ray.tfar[i]);
+      }
     }
   }
+}
+
+}  // namespace
+
+void RayScene::cast_row(const RayRow& row, std::uint32_t* quad, float* t) const {
+  cast(
+      impl_->scene, row, 0, row.count, [&](int) { return row.max_t; },
+      [&](int x, std::uint32_t id, float at) {
+        quad[x] = id;
+        t[x] = at;
+      },
+      [&](int x) {
+        quad[x] = kMiss;
+        t[x] = row.max_t;
+      });
+}
+
+void RayScene::cast_nearer(const RayRow& row, int begin, int end, std::uint32_t first_quad,
+                           std::uint32_t* quad, float* t) const {
+  cast(
+      impl_->scene, row, begin, end, [&](int x) { return t[x]; },
+      [&](int x, std::uint32_t id, float at) {
+        quad[x] = first_quad + id;
+        t[x] = at;
+      },
+      [](int) {});
 }
 
 }  // namespace rovigo::sim

@@ -19,6 +19,22 @@ struct View {
   std::vector<float> depth_m;        ///< along the optical axis; infinity: nothing there
   std::vector<float> cos_incidence;  ///< of the ray on the surface, 0 .. 1
   std::vector<float> bgr;            ///< three a pixel, 0 .. 1 and above where overexposed
+  /// Where the floor mirrors: depth of the virtual image below it (infinity: it mirrors nothing);
+  /// NaN off the floor. Empty when no mirror was asked for.
+  std::vector<float> mirror_depth_m;
+};
+
+/// Something that is elsewhere in every frame.
+struct Mover {
+  std::vector<Solid> solids;
+};
+
+struct ViewRequest {
+  mrpt::poses::CPose3D world_from_camera;  ///< optical frame
+  mrpt::img::TCamera camera;
+  std::vector<Mover> movers = {};
+  double mirror = 0.0;  ///< of the floor: 0 matt .. 1 as water is
+  int threads = 1;      ///< rows are shared out; their number does not change the result
 };
 
 class Renderer {
@@ -26,10 +42,7 @@ class Renderer {
   explicit Renderer(const WorldModel& world);
   ~Renderer();
 
-  /// `world_from_camera` is the optical frame. Rows are shared out over `threads` threads; their
-  /// number does not change the result.
-  void render(const mrpt::poses::CPose3D& world_from_camera, const mrpt::img::TCamera& camera,
-              int threads, View& view) const;
+  void render(const ViewRequest& request, View& view) const;
 
  private:
   struct Impl;

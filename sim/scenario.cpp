@@ -53,6 +53,33 @@ void CameraNoise::describe(maps::SettingsVisitor& v) {
          target_brightness);
 }
 
+void FloorGloss::describe(maps::SettingsVisitor& v) {
+  v.real({.name = "mirror", .help = "How strongly the floor mirrors.", .min = 0, .max = 1}, mirror);
+  v.real({.name = "virtual_depth_share",
+          .help = "Share of shallow floor pixels that read the mirror image's depth.",
+          .min = 0,
+          .max = 1},
+         virtual_depth_share);
+  v.real({.name = "dropout_share",
+          .help = "Share of shallow floor pixels without return.",
+          .min = 0,
+          .max = 1},
+         dropout_share);
+  v.real({.name = "depth_noise_m", .help = "Waves of the other pixels.", .min = 0, .max = 0.5},
+         depth_noise_m);
+}
+
+void PeopleSettings::describe(maps::SettingsVisitor& v) {
+  v.integer({.name = "count", .help = "How many walk about.", .min = 0, .max = 10}, count);
+  v.real({.name = "min_speed_m_s", .help = "Slowest walk.", .min = 0.1, .max = 3}, min_speed_m_s);
+  v.real({.name = "max_speed_m_s", .help = "Fastest walk.", .min = 0.1, .max = 3}, max_speed_m_s);
+  v.real({.name = "reach_m",
+          .help = "They walk to places up to this far from the rover.",
+          .min = 1.5,
+          .max = 10},
+         reach_m);
+}
+
 void ImuNoise::describe(maps::SettingsVisitor& v) {
   v.real({.name = "rate_hz", .help = "Samples a second.", .min = 1, .max = 240}, rate_hz);
   v.real({.name = "gyro_sigma_rad_s", .help = "White noise of each sample.", .min = 0, .max = 1},
@@ -222,9 +249,9 @@ void require_ordered(const std::string& file, const YAML::Node& root, const char
 
 Scenario parse_scenario(const std::string& yaml, const std::string& file) {
   const YAML::Node root = parse_yaml(yaml, file);
-  require_known_keys(
-      file, root,
-      {"name", "camera", "imu", "wheels", "motor", "pose", "light_steps", "blackouts", "kidnaps"});
+  require_known_keys(file, root,
+                     {"name", "camera", "floor", "people", "imu", "wheels", "motor", "pose",
+                      "light_steps", "blackouts", "kidnaps"});
   Scenario s;
   s.name = std::filesystem::path(file).stem().string();
   if (const YAML::Node name = root["name"]) {
@@ -232,6 +259,8 @@ Scenario parse_scenario(const std::string& yaml, const std::string& file) {
     s.name = name.Scalar();
   }
   read_section(file, root, "camera", s.camera);
+  read_section(file, root, "floor", s.floor);
+  read_section(file, root, "people", s.people);
   read_section(file, root, "imu", s.imu);
   read_section(file, root, "wheels", s.wheels);
   read_section(file, root, "motor", s.motor);
@@ -241,6 +270,8 @@ Scenario parse_scenario(const std::string& yaml, const std::string& file) {
   read_events(file, root, "kidnaps", s.kidnaps);
   require_ordered(file, root, "camera", "min_range_m", s.camera.min_range_m, "max_range_m",
                   s.camera.max_range_m);
+  require_ordered(file, root, "people", "min_speed_m_s", s.people.min_speed_m_s, "max_speed_m_s",
+                  s.people.max_speed_m_s);
   require_ordered(file, root, "wheels", "slip_min", s.wheels.slip_min, "slip_max",
                   s.wheels.slip_max);
   return s;

@@ -27,6 +27,24 @@ struct CameraNoise {
   void describe(maps::SettingsVisitor& v);
 };
 
+/// A polished floor: it mirrors, and that deceives the depth camera where the view is shallow.
+struct FloorGloss {
+  double mirror = 0.0;               ///< 0 matt .. 1 as still water (Fresnel's law, scaled)
+  double virtual_depth_share = 0.3;  ///< of shallow pixels, in patches: depth of the mirror image
+  double dropout_share = 0.3;        ///< of shallow pixels, in patches: no return
+  double depth_noise_m = 0.04;       ///< slow waves of the depth elsewhere
+  void describe(maps::SettingsVisitor& v);
+};
+
+/// People who walk about near the rover; they never come near it, and are in no grid.
+struct PeopleSettings {
+  int count = 0;
+  double min_speed_m_s = 0.6;
+  double max_speed_m_s = 1.2;
+  double reach_m = 3.5;  ///< they walk to places up to this far from the rover
+  void describe(maps::SettingsVisitor& v);
+};
+
 struct ImuNoise {
   double rate_hz = 100.0;
   double gyro_sigma_rad_s = 0.003;
@@ -104,6 +122,8 @@ struct Kidnap {
 struct Scenario {
   std::string name = "default";
   CameraNoise camera;
+  FloorGloss floor;
+  PeopleSettings people;
   ImuNoise imu;
   WheelNoise wheels;
   MotorModel motor;

@@ -54,9 +54,13 @@ void SeenSurfaces::add_view(const mrpt::poses::CPose3D& world_from_camera,
   for (int y = 0; y < static_cast<int>(camera.nrows); y += kStride) {
     const Eigen::Vector3d first = rays.d0 + y * rays.dy;
     const Eigen::Vector3d step = kStride * rays.dx;
-    impl_->scene.cast_row(rays.origin.cast<float>(), first.cast<float>(), step.cast<float>(),
-                          columns, static_cast<float>(limits.max_range_m), quad.data(),
-                          depth.data());
+    RayRow row;
+    row.origin = rays.origin.cast<float>();
+    row.first = first.cast<float>();
+    row.step = step.cast<float>();
+    row.count = columns;
+    row.max_t = static_cast<float>(limits.max_range_m);
+    impl_->scene.cast_row(row, quad.data(), depth.data());
     for (int i = 0; i < columns; ++i) {
       const auto k = static_cast<std::size_t>(i);
       if (quad[k] == RayScene::kMiss) continue;

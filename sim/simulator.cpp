@@ -10,6 +10,7 @@
 #include "sim/depth_camera.h"
 #include "sim/drive_train.h"
 #include "sim/kidnapping.h"
+#include "sim/people.h"
 #include "sim/rover.h"
 #include "sim/world_model.h"
 
@@ -18,10 +19,18 @@ namespace {
 
 constexpr double kFirstTimeS = 1.0;  // MRPT takes 0 for "no time"
 constexpr int kSettleSteps = 48;     // 0.2 s for the wheels to take the weight
+constexpr long kStepsPerWalk = 4;    // People::kStepS
+static_assert(People::kStepS == kStepsPerWalk * Simulator::kStepS);
 constexpr double kCameraForwardM = 0.12;
 constexpr double kCameraHeightM = 0.25;
 
-enum Stream : std::uint64_t { kImuStream = 10, kWheelStream, kSlipStream, kCameraStream };
+enum Stream : std::uint64_t {
+  kImuStream = 10,
+  kWheelStream,
+  kSlipStream,
+  kCameraStream,
+  kPeopleStream
+};
 
 mrpt::poses::CPose3D to_mrpt(const Eigen::Isometry3d& m) {
   mrpt::math::CMatrixDouble44 matrix;
@@ -104,7 +113,8 @@ struct Simulator::Impl {
         wheel_timer(o.scenario.wheels.rate_hz),
         camera_timer(o.camera_rate_hz) {
     if (options.camera_enabled) {
-      camera = std::make_unique<DepthCamera>(world.model(), options.scenario.camera, rig.camera,
+      camera = std::make_unique<DepthCamera>(world.model(), options.scenario.camera,
+                                             options.scenario.floor, rig.camera,
                                              derive_seed(options.seed, kCameraStream));
     }
     const SideDrive hold{0.0, options.scenario.motor.stall_torque_nm};
@@ -119,6 +129,10 @@ struct Simulator::Impl {
     }
     imu.reset_motion(body.state());
     update_truth();
+    if (camera && options.scenario.people.count > 0) {
+      people.emplace(world, options.scenario.people, pose_now(),
+                     derive_seed(options.seed, kPeopleStream));
+    }
     sense();
   }
 
@@ -141,6 +155,7 @@ struct Simulator::Impl {
     ++step_index;
     follow_kidnaps();
     update_truth();
+    if (people && step_index % kStepsPerWalk == 0) people->step(pose_now());
     if (!is_switched_off()) imu.advance(state);
     sense();
   }
@@ -236,6 +251,7 @@ struct Simulator::Impl {
     if (blackout && blackout->kind == "missing") return;
     if (ride && !ride->camera_covered()) return;
     p.shot.covered = blackout || ride;
+    if (people) p.shot.movers = people->bodies();
     pending.push_back(std::move(p));
   }
 
@@ -255,6 +271,7 @@ struct Simulator::Impl {
   ImuSensor imu;
   WheelSensor wheels;
   std::unique_ptr<DepthCamera> camera;
+  std::optional<People> people;
   Timer imu_timer;
   Timer wheel_timer;
   Timer camera_timer;

@@ -39,7 +39,8 @@ int describe_recording(const InfoOptions& options, const Console& console) {
       progress.update(reader->progress());
     }
   }
-  for (const auto& warning : reader->warnings()) console.warn(warning);
+  const std::vector<std::string> warnings = reader->warnings();
+  for (const auto& warning : warnings) console.warn(warning);
   const auto& info = reader->info();
   const auto& camera = info.rig.camera;
   const double duration = last_s - first_s;
@@ -65,16 +66,19 @@ int describe_recording(const InfoOptions& options, const Console& console) {
                                   {"cy", camera.cy()}}},
                                 {"has_extrinsics", info.rig.has_extrinsics}};
   if (info.simulation) object["world"] = info.simulation->world;
-  console.result(
-      object, options.file.string() + ": a recording (" + info.format + ")",
-      {{"duration", with_unit(duration, 2, "s")},
-       {"RGB-D frames", std::to_string(frames) + rate(frames) + ", " +
-                            std::to_string(camera.ncols) + " x " + std::to_string(camera.nrows)},
-       {"IMU", imu ? std::to_string(imu) + " samples" + rate(imu) : "none"},
-       {"wheels", wheels ? std::to_string(wheels) + " samples" + rate(wheels) : "none"},
-       {"camera on the rover",
-        info.rig.has_extrinsics ? "known" : "unknown: the camera is taken as the body"},
-       {"simulated world", info.simulation ? info.simulation->world : "no"}});
+  for (const auto& [sensor, topic] : info.sources) object["sources"][sensor] = topic;
+  object["warnings"] = warnings;
+  std::vector<Row> rows = {
+      {"duration", with_unit(duration, 2, "s")},
+      {"RGB-D frames", std::to_string(frames) + rate(frames) + ", " + std::to_string(camera.ncols) +
+                           " x " + std::to_string(camera.nrows)},
+      {"IMU", imu ? std::to_string(imu) + " samples" + rate(imu) : "none"},
+      {"wheels", wheels ? std::to_string(wheels) + " samples" + rate(wheels) : "none"},
+      {"camera on the rover",
+       info.rig.has_extrinsics ? "known" : "unknown: the camera is taken as the body"},
+      {"simulated world", info.simulation ? info.simulation->world : "no"}};
+  for (const auto& [sensor, topic] : info.sources) rows.emplace_back(sensor + " from", topic);
+  console.result(object, options.file.string() + ": a recording (" + info.format + ")", rows);
   return kDone;
 }
 

@@ -42,6 +42,7 @@ constexpr int kTrimEvery = 500;
 /// What reading a whole recording showed, whatever it was read for.
 struct Reading {
   std::vector<double> frame_times_s;
+  std::vector<std::string> warnings;  ///< of the reader, already shown
   double cpu_ms_per_frame = 0.0;
   double duration_s() const {
     return frame_times_s.empty() ? 0.0 : frame_times_s.back() - frame_times_s.front();
@@ -65,7 +66,8 @@ Reading read_all(slam::RecordingReader& reader, const std::string& label, const 
   const double cpu = cpu_seconds() - cpu_before;
   const auto frames = reading.frame_times_s.size();
   if (frames > 0) reading.cpu_ms_per_frame = 1e3 * cpu / static_cast<double>(frames);
-  for (const std::string& warning : reader.warnings()) console.warn(warning);
+  reading.warnings = reader.warnings();
+  for (const std::string& warning : reading.warnings) console.warn(warning);
   return reading;
 }
 
@@ -151,6 +153,7 @@ int run_map(const MapOptions& options) {
                   {"loop_closures", summary.loop_closures},
                   {"keyframes", summary.keyframes},
                   {"skipped_frames", reader->skipped()},
+                  {"warnings", reading.warnings},
                   {"cpu_ms_per_frame", reading.cpu_ms_per_frame},
                   {"peak_rss_mb", peak_rss_mb()}},
                  message,
@@ -213,6 +216,7 @@ int run_localize(const LocalizeOptions& options) {
       {"coverage", covered},
       {"tracked_fraction", tracked},
       {"health", {{"state", to_string(last.health)}, {"confidence", last.confidence}}},
+      {"warnings", reading.warnings},
       {"cpu_ms_per_frame", reading.cpu_ms_per_frame},
       {"peak_rss_mb", peak_rss_mb()}};
   if (first_fix_s) object["first_fix_s"] = *first_fix_s;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "slam/recording/pose_numbers.h"
+
 namespace rovigo::slam {
 
 std::vector<std::pair<std::size_t, std::size_t>> closest_pairs(
@@ -36,6 +38,20 @@ std::vector<std::pair<std::size_t, std::size_t>> closest_pairs(
     if (depth_of[i] != kNone) pairs.emplace_back(i, depth_of[i]);
   }
   return pairs;
+}
+
+std::string time_offset_warning(std::vector<double> differences_s) {
+  constexpr std::size_t kFewest = 5;
+  constexpr double kMost_s = 0.012;  // a third of a frame at 30 Hz; TUM's cameras err by 0.008
+  if (differences_s.size() < kFewest) return {};
+  const auto middle = differences_s.begin() + static_cast<std::ptrdiff_t>(differences_s.size() / 2);
+  std::nth_element(differences_s.begin(), middle, differences_s.end());
+  if (std::abs(*middle) <= kMost_s) return {};
+  return "Depth images are taken " + fixed(1e3 * std::abs(*middle), 0) + " ms " +
+         (*middle > 0.0 ? "after" : "before") +
+         " their colour images (median), so that their edges part in turns; synchronise the "
+         "cameras "
+         "if they can be.";
 }
 
 }  // namespace rovigo::slam

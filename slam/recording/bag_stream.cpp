@@ -205,6 +205,8 @@ std::optional<BagStream::Image> BagStream::take_partner(std::uint64_t color_ns) 
   if (pairs.empty() || pairs.front().first != 0) return std::nullopt;
   const auto found = std::next(depths_.begin(), static_cast<std::ptrdiff_t>(pairs.front().second));
   Image depth = std::move(found->second);
+  constexpr std::size_t kMostOffsets = 1000;
+  if (offsets_s_.size() < kMostOffsets) offsets_s_.push_back(relative_s(found->first));
   waiting_bytes_ -= depth.message.data.size();
   depths_.erase(found);
   return depth;
@@ -266,6 +268,9 @@ double BagStream::progress() const {
 std::vector<std::string> BagStream::warnings() const {
   WarningList all = warnings_;
   for (const std::string& sentence : bag_.warnings().sentences()) all.add(sentence);
+  if (std::string offset = time_offset_warning(offsets_s_); !offset.empty()) {
+    all.add(std::move(offset));
+  }
   if (unpaired_ > 0) {
     all.add(std::to_string(unpaired_) + " of " + std::to_string(colors_) +
             " colour images have no depth image within 0.02 s and are left out.");

@@ -83,6 +83,7 @@ class BagStream {
   std::optional<Force> force_;  ///< the latest
   std::optional<WheelSample> last_wheels_;
 
+  std::vector<double> offsets_s_;  ///< of depth images after their colour images, the first ones
   int colors_ = 0;
   int unpaired_ = 0;
   int unreadable_ = 0;

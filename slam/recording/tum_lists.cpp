@@ -61,7 +61,7 @@ std::vector<RgbdEntry> associate(const std::vector<ImageEntry>& color,
                                  const std::vector<ImageEntry>& depth, double max_difference_s) {
   std::vector<RgbdEntry> pairs;
   for (const auto& [i, j] : closest_pairs(times_of(color), times_of(depth), max_difference_s)) {
-    pairs.push_back({color[i].time_s, color[i].path, depth[j].path});
+    pairs.push_back({color[i].time_s, depth[j].time_s, color[i].path, depth[j].path});
   }
   return pairs;
 }
@@ -74,13 +74,13 @@ std::vector<RgbdEntry> read_associations(const std::filesystem::path& path) {
     std::filesystem::path color = image_path(file, line, 1);
     std::filesystem::path depth = image_path(file, line, 3);
     double time_s = file.time(line, 0);
-    const double other_time_s = file.time(line, 2);
+    double depth_time_s = file.time(line, 2);
     if (names_depth(color) && !names_depth(depth)) {
       std::swap(color, depth);
-      time_s = other_time_s;
+      std::swap(time_s, depth_time_s);
     }
     if (!pairs.empty()) require_order(file, line, time_s, pairs.back().time_s, true);
-    pairs.push_back({time_s, std::move(color), std::move(depth)});
+    pairs.push_back({time_s, depth_time_s, std::move(color), std::move(depth)});
   }
   if (pairs.empty()) throw maps::InputError(path.string() + ": no images are listed");
   return pairs;

@@ -17,6 +17,7 @@ struct ImageEntry {
 /// A colour image and the depth image taken with it; the time is the colour image's.
 struct RgbdEntry {
   double time_s = 0.0;
+  double depth_time_s = 0.0;
   std::filesystem::path color;
   std::filesystem::path depth;
 };

@@ -6,6 +6,7 @@
 
 #include "maps/atomic_file.h"
 #include "maps/error.h"
+#include "slam/recording/association.h"
 #include "slam/recording/images.h"
 #include "slam/recording/rig_yaml.h"
 #include "slam/recording/tum_lists.h"
@@ -94,6 +95,13 @@ void TumReader::read_lists() {
                     std::to_string(color.size()) +
                     " colour images have no depth image within 0.02 s and are left out.");
     }
+  }
+  std::vector<double> differences_s;
+  for (const RgbdEntry& frame : frames_) {
+    differences_s.push_back(frame.depth_time_s - frame.time_s);
+  }
+  if (std::string offset = time_offset_warning(std::move(differences_s)); !offset.empty()) {
+    warnings_.add(std::move(offset));
   }
   const fs::path imu = directory_ / "imu.txt";
   const fs::path wheels = directory_ / "wheel_odometry.txt";

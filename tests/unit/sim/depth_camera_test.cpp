@@ -211,8 +211,8 @@ TEST(DepthCamera, TheNumberOfThreadsDoesNotChangeABit) {
   const mrpt::poses::CPose3D pose(0.0, 0.0, 0.25, -1.4, 0.1, -1.6);
   View one;
   View three;
-  renderer.render(pose, camera, 1, one);
-  renderer.render(pose, camera, 3, three);
+  renderer.render({.world_from_camera = pose, .camera = camera, .threads = 1}, one);
+  renderer.render({.world_from_camera = pose, .camera = camera, .threads = 3}, three);
   EXPECT_EQ(one.depth_m, three.depth_m);
   EXPECT_EQ(one.bgr, three.bgr);
 }

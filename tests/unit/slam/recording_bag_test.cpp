@@ -321,6 +321,20 @@ TEST_F(HandmadeBag, WithImagesFarApartInTimeSaysSo) {
   EXPECT_THAT(open_error(file()), HasSubstr("0.02 s"));
 }
 
+TEST_F(HandmadeBag, WarnsOfImagesTakenApart) {
+  write([](BagWriter& bag) {
+    for (std::uint64_t time_ns = 10'000'000'000; time_ns < 12'000'000'000; time_ns += 100'000'000) {
+      bag.received(time_ns);
+      bag.camera_info("/camera_info", time_ns, "optical", camera());
+      bag.image("/rgb", time_ns, "optical", color_image());
+      bag.image("/depth", time_ns + 15'000'000, "optical", depth_image());
+    }
+  });
+  const auto reader = open_recording(file());
+  EXPECT_THAT(test::read_all(*reader), SizeIs(20));
+  EXPECT_THAT(test::all_in_one(reader->warnings()), HasSubstr("15 ms after"));
+}
+
 TEST_F(HandmadeBag, IgnoresATransformThatIsNotFinite) {
   write([](BagWriter& bag) {
     bag.received(10'000'000'000);
