@@ -2,17 +2,8 @@
 // same lethal cells connects start and goal, every refusal carries its code, and every trajectory
 // passes the checker.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cctype>
-#include <filesystem>
-#include <string>
-#include <vector>
-
-#include "maps/ros_map.h"
 #include "tests/integration/planning_queries.h"
-#include "tests/support/run_rovigo.h"
+#include "tests/support/public_maps.h"
 
 namespace rovigo::planning {
 namespace {
@@ -26,16 +17,7 @@ TEST_P(RosMaps, PlansExistExactlyWhereTheCellsConnect) {
   expect_plans_where_cells_connect(maps::load_ros_map(file, warnings), 100, 42);
 }
 
-INSTANTIATE_TEST_SUITE_P(Data, RosMaps,
-                         testing::Values("willow-2010-02-18-0.10", "willow-full-0.05",
-                                         "tb3_sandbox", "tb3_map", "100by100_15"),
-                         [](const auto& param) {
-                           std::string name = param.param;
-                           std::replace_if(
-                               name.begin(), name.end(),
-                               [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Data, RosMaps, test::ros_maps(), test::map_test_name);
 
 }  // namespace
 }  // namespace rovigo::planning
