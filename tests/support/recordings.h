@@ -1,6 +1,7 @@
 #pragma once
 // Small recordings for the tests: 64 x 48 pixels, a known texture, a slanted wall, IMU and wheels.
 
+#include <gtest/gtest.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationOdometry.h>
@@ -138,6 +139,21 @@ inline std::vector<mrpt::obs::CObservation::Ptr> read_all(RecordingReader& reade
   std::vector<mrpt::obs::CObservation::Ptr> all;
   while (auto observation = reader.next()) all.push_back(observation);
   return all;
+}
+
+/// Times and kinds of what a recording gives are those of what was written, and nothing is amiss.
+inline void expect_reads_back(const fs::path& path,
+                              const std::vector<mrpt::obs::CObservation::Ptr>& written) {
+  const auto reader = open_recording(path);
+  const auto read = read_all(*reader);
+  ASSERT_EQ(read.size(), written.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(read[i]->timestamp, written[i]->timestamp) << "observation " << i;
+    EXPECT_EQ(read[i]->GetRuntimeClass(), written[i]->GetRuntimeClass()) << "observation " << i;
+  }
+  EXPECT_EQ(reader->skipped(), 0);
+  EXPECT_TRUE(reader->warnings().empty()) << reader->warnings().front();
+  EXPECT_DOUBLE_EQ(reader->progress(), 1.0);
 }
 
 template <class T>

@@ -58,21 +58,12 @@ class Bag : public ::testing::TestWithParam<Layout> {
 };
 
 TEST_P(Bag, ReadsBackEveryObservationInOrder) {
-  const auto reader = open_recording(file());
-  const auto read = test::read_all(*reader);
   std::vector<mrpt::obs::CObservation::Ptr> expected;
   for (const auto& o : written_) {
     const bool is_wheels = IS_CLASS(*o, CObservationOdometry);
     if (!is_wheels || style() != BagStyle::kRealSenseRecorder) expected.push_back(o);
   }
-  ASSERT_EQ(read.size(), expected.size()) << test::all_in_one(reader->warnings());
-  for (std::size_t i = 0; i < read.size(); ++i) {
-    EXPECT_EQ(read[i]->timestamp, expected[i]->timestamp) << "observation " << i;
-    EXPECT_EQ(read[i]->GetRuntimeClass(), expected[i]->GetRuntimeClass()) << "observation " << i;
-  }
-  EXPECT_EQ(reader->skipped(), 0);
-  EXPECT_THAT(reader->warnings(), IsEmpty());
-  EXPECT_DOUBLE_EQ(reader->progress(), 1.0);
+  test::expect_reads_back(file(), expected);
 }
 
 TEST_P(Bag, KeepsColourAndDepthBitForBit) {

@@ -13,8 +13,8 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "tests/support/recordings.h"
 #include "slam/recording/images.h"
+#include "tests/support/recordings.h"
 
 namespace rovigo::slam {
 namespace {
@@ -58,18 +58,7 @@ class Rawlog : public ::testing::Test {
   std::vector<mrpt::obs::CObservation::Ptr> written_;
 };
 
-TEST_F(Rawlog, ReadsBackEveryObservationInOrder) {
-  const auto reader = open_recording(file());
-  const auto read = test::read_all(*reader);
-  ASSERT_EQ(read.size(), written_.size());
-  for (std::size_t i = 0; i < read.size(); ++i) {
-    EXPECT_EQ(read[i]->timestamp, written_[i]->timestamp) << "observation " << i;
-    EXPECT_EQ(read[i]->GetRuntimeClass(), written_[i]->GetRuntimeClass()) << "observation " << i;
-  }
-  EXPECT_EQ(reader->skipped(), 0);
-  EXPECT_THAT(reader->warnings(), IsEmpty());
-  EXPECT_DOUBLE_EQ(reader->progress(), 1.0);
-}
+TEST_F(Rawlog, ReadsBackEveryObservationInOrder) { test::expect_reads_back(file(), written_); }
 
 TEST_F(Rawlog, KeepsDepthExactlyColourToJpegAndTheSensorPose) {
   const auto read = test::only<CObservation3DRangeScan>(test::read_all(*open_recording(file())));

@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <opencv2/imgcodecs.hpp>
 
-#include "tests/support/recordings.h"
 #include "slam/recording/images.h"
 #include "slam/recording/tum_lists.h"
+#include "tests/support/recordings.h"
 
 namespace rovigo::slam {
 namespace {
@@ -44,16 +44,7 @@ class TumDirectory : public ::testing::Test {
 };
 
 TEST_F(TumDirectory, ReadsBackEveryObservationInOrder) {
-  const auto reader = open_recording(directory());
-  const auto read = test::read_all(*reader);
-  ASSERT_EQ(read.size(), written_.size());
-  for (std::size_t i = 0; i < read.size(); ++i) {
-    EXPECT_EQ(read[i]->timestamp, written_[i]->timestamp) << "observation " << i;
-    EXPECT_EQ(read[i]->GetRuntimeClass(), written_[i]->GetRuntimeClass()) << "observation " << i;
-  }
-  EXPECT_EQ(reader->skipped(), 0);
-  EXPECT_THAT(reader->warnings(), IsEmpty());
-  EXPECT_DOUBLE_EQ(reader->progress(), 1.0);
+  test::expect_reads_back(directory(), written_);
 }
 
 TEST_F(TumDirectory, KeepsDepthToATenthOfAMillimetreAndColourToJpeg) {
