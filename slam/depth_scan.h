@@ -1,6 +1,5 @@
 #pragma once
-// A depth image pressed flat: where, in each direction over the floor, something stands in the
-// rover's way, and how far nothing does.
+// A depth image as rays over the floor.
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
@@ -12,46 +11,45 @@
 
 namespace rovigo::slam {
 
-struct ScanHit {
-  int direction = 0;  ///< index into the scan's directions
-  float range_m = 0;  ///< over the floor, from the camera
-  float sigma_m = 0;
-  int pixels = 0;  ///< that agree on it
+/// One return. Ranges are over the floor, from the camera; heights grow linearly along them.
+struct ScanRay {
+  float along_x = 0, along_y = 0;  ///< unit vector over the floor
+  float slope = 0;                 ///< metres of height per metre over the floor
+  float range_m = 0;
+  float sigma_m = 0;  ///< of the range
 };
 
-/// Directions and ranges are over the floor, seen from the camera, in the *level* frame: base_link
-/// turned upright, z = 0 on the floor.
+/// In the *level* frame: base_link turned upright, z = 0 on the floor.
 struct DepthScan {
-  Eigen::Vector2f origin = Eigen::Vector2f::Zero();  ///< of the camera
-  float first_direction_rad = 0, direction_step_rad = 0;
-  std::vector<float> clear_m;  ///< per direction: no obstacle height was met up to here
-  std::vector<ScanHit> hits;
+  Eigen::Vector3f camera = Eigen::Vector3f::Zero();
+  int fine_from = 0;  ///< rays from here on lie between the others: needed only far away
+  float columns_per_rad = 0.0f, rows_per_rad = 0.0f;  ///< of all rays
+  std::vector<ScanRay> rays;
 };
 
+/// Samples depth images every few pixels, rows twice as densely as columns: tops are thin. One ray
+/// in eight comes first, so that near the camera, where rays crowd, these alone may be followed.
 class DepthScanner {
  public:
-  DepthScanner(const CameraModel& camera, const GridConfig& grid, const DepthConfig& depth);
+  DepthScanner(const CameraModel& camera, const DepthConfig& depth);
 
-  /// `level_from_camera`: from the optical frame; only height and direction matter.
+  /// `depth` is 16-bit, `unit_m` metres a step, 0 for no return; of the camera's size or a whole
+  /// fraction of it. Only height and direction of `level_from_camera` (optical frame) matter.
   DepthScan scan(const cv::Mat& depth, double unit_m, const Se3& level_from_camera);
 
  private:
-  struct Ray {
-    int direction = -1;
-    float across = 0;  ///< metres over the floor per metre of depth
-    float up = 0;      ///< metres of height per metre of depth
+  struct Sample {
+    int u = 0, v = 0;
+    Eigen::Vector3f ray = Eigen::Vector3f::Zero();  ///< camera frame, z = 1
   };
-  void aim(const Se3& level_from_camera);
-  void cluster(int direction, std::vector<float>& ranges, DepthScan& scan) const;
+  void lay_samples(int cols, int rows);
 
   CameraModel camera_;
-  GridConfig grid_;
   DepthConfig depth_;
-  Se3 aimed_at_;
-  bool aimed_ = false;
-  float first_direction_rad_ = 0, direction_step_rad_ = 0;
-  int directions_ = 0;
-  std::vector<Ray> rays_;
+  int cols_ = 0, rows_ = 0;
+  std::size_t fine_from_ = 0;
+  float columns_per_rad_ = 0.0f, rows_per_rad_ = 0.0f;
+  std::vector<Sample> samples_;
 };
 
 }  // namespace rovigo::slam

@@ -3,144 +3,163 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slam/overhang.h"
+
 namespace rovigo::slam {
 
 namespace {
 
-constexpr double kHit = 0.9;     // log-odds of a hit close by
-constexpr double kMiss = 0.35;   // and of a ray passing
-constexpr double kBlindM = 0.7;  // nearer than this the camera sees over low things
-constexpr double kBlindMiss = 0.1;
-constexpr double kDriven = 1.0;
-constexpr double kLimit = 6.0;             // so that the world may change its mind
-constexpr double kOccupiedLogOdds = 0.62;  // 65%
-constexpr double kFreeLogOdds = -0.3;
+constexpr int kOccupiedSteps = 16;  // log-odds 1: more than one look, or a rare clear one
+constexpr int kFreeSteps = -5;
 constexpr int kMostCells = 8000;  // a side
+constexpr int kStripRows = 64;
 
 struct Box {
   double x0 = 1e9, y0 = 1e9, x1 = -1e9, y1 = -1e9;
-  void add(const TPoint2D& p, double margin) {
-    x0 = std::min(x0, p.x - margin);
-    y0 = std::min(y0, p.y - margin);
-    x1 = std::max(x1, p.x + margin);
-    y1 = std::max(y1, p.y + margin);
+  void add(const TPoint2D& p) {
+    x0 = std::min(x0, p.x);
+    y0 = std::min(y0, p.y);
+    x1 = std::max(x1, p.x);
+    y1 = std::max(y1, p.y);
   }
 };
 
-TPoint2D point_of(const PlacedScan& placed, double direction, double range) {
-  const DepthScan& s = *placed.scan;
-  const double a = s.first_direction_rad + direction * s.direction_step_rad;
-  return maps::transform(placed.map_from_level,
-                         {s.origin.x() + range * std::cos(a), s.origin.y() + range * std::sin(a)});
-}
-
-maps::GridGeometry geometry_of(const GridRequest& request, const GridConfig& config) {
-  Box box;
-  for (const PlacedScan& p : request.scans) {
-    box.add(maps::position_of(p.map_from_level), 0.3);
-    for (std::size_t d = 0; d < p.scan->clear_m.size(); d += 4) {
-      box.add(point_of(p, static_cast<double>(d), p.scan->clear_m[d]), 0.3);
-    }
-    for (const ScanHit& h : p.scan->hits) box.add(point_of(p, h.direction, h.range_m), 0.3);
-  }
-  for (const TPose2D& pose : request.driven) box.add(maps::position_of(pose), 0.5);
-  if (box.x1 < box.x0) box.add({0, 0}, 0.5);
-  const double r = config.grid_resolution_m;
-  maps::GridGeometry g;
-  g.resolution_m = r;
-  // Whole multiples of the resolution, so that maps of one place line up cell by cell.
-  g.origin = {std::floor(box.x0 / r) * r, std::floor(box.y0 / r) * r};
-  g.width = std::clamp(static_cast<int>(std::ceil((box.x1 - g.origin.x) / r)), 1, kMostCells);
-  g.height = std::clamp(static_cast<int>(std::ceil((box.y1 - g.origin.y) / r)), 1, kMostCells);
-  return g;
-}
-
-/// Adds up evidence; within one scan each cell counts once, and hits before misses.
-class Evidence {
+/// A patch with its tiles laid out for looking up, and the part of the map it covers.
+class Layer {
  public:
-  explicit Evidence(const maps::GridGeometry& g)
-      : geometry_(g), log_odds_(g.size(), 0.0f), seen_(g.size(), 0), stamp_(g.size(), 0) {}
-
-  void add(const PlacedScan& placed) {
-    ++scan_;
-    for (const ScanHit& h : placed.scan->hits) {
-      // A far hit may lie in the next cell: it counts for less.
-      const double trust = 1.0 / (1.0 + std::pow(h.range_m / 3.0, 2));
-      const double many = std::min(1.0, 0.25 * h.pixels);
-      mark(geometry_.cell_at(point_of(placed, h.direction, h.range_m)),
-           kHit * std::max(0.3, trust) * many * 1.3);
+  Layer(const PlacedPatch& placed, double resolution_m)
+      : patch_from_map_(maps::inverse(placed.map_from_patch)), resolution_m_(resolution_m) {
+    constexpr int kSide = EvidencePatch::kTileSide;
+    if (placed.patch->tiles().empty()) return;
+    EvidencePatch::TileIndex last{};
+    first_ = last = placed.patch->tiles().begin()->first;
+    for (const auto& [i, tile] : placed.patch->tiles()) {
+      first_ = {std::min(first_.y, i.y), std::min(first_.x, i.x)};
+      last = {std::max(last.y, i.y), std::max(last.x, i.x)};
     }
-    const TPoint2D eye = point_of(placed, 0, 0);
-    for (std::size_t d = 0; d < placed.scan->clear_m.size(); ++d) {
-      clear_ray(eye, point_of(placed, static_cast<double>(d), placed.scan->clear_m[d]));
+    across_ = last.x - first_.x + 1;
+    down_ = last.y - first_.y + 1;
+    tiles_.resize(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_), nullptr);
+    for (const auto& [i, tile] : placed.patch->tiles()) {
+      tiles_[static_cast<std::size_t>((i.y - first_.y) * across_ + i.x - first_.x)] = &tile;
     }
-  }
-
-  void add_driven(const TPose2D& pose, double radius_m) {
-    const maps::Cell c = geometry_.cell_at(maps::position_of(pose));
-    const int n = static_cast<int>(std::ceil(radius_m / geometry_.resolution_m));
-    ++scan_;
-    for (int dy = -n; dy <= n; ++dy) {
-      for (int dx = -n; dx <= n; ++dx) {
-        const maps::Cell cell{c.x + dx, c.y + dy};
-        if (!geometry_.contains(cell)) continue;
-        if (maps::distance(geometry_.center_of(cell), maps::position_of(pose)) <= radius_m) {
-          mark(cell, -kDriven);
-        }
+    for (const int y : {first_.y * kSide, (last.y + 1) * kSide}) {
+      for (const int x : {first_.x * kSide, (last.x + 1) * kSide}) {
+        box_.add(maps::transform(placed.map_from_patch, {x * resolution_m, y * resolution_m}));
       }
     }
   }
 
-  maps::OccupancyGrid grid() const {
-    maps::OccupancyGrid out(geometry_);
-    for (std::size_t i = 0; i < log_odds_.size(); ++i) {
-      const double l = log_odds_[i];
-      if (!seen_[i] || (l > kFreeLogOdds && l < kOccupiedLogOdds)) continue;
-      const double p = 1.0 - 1.0 / (1.0 + std::exp(l));
-      out.cells[i] = static_cast<std::int8_t>(std::lround(100.0 * p));
-    }
-    return out;
+  const Box& box() const { return box_; }
+
+  /// The evidence of the cell that holds a point of the map; null: none.
+  const CellEvidence* at(const TPoint2D& in_map) const {
+    constexpr int kSide = EvidencePatch::kTileSide;
+    const TPoint2D p = maps::transform(patch_from_map_, in_map);
+    const int x = static_cast<int>(std::floor(p.x / resolution_m_)) - first_.x * kSide;
+    const int y = static_cast<int>(std::floor(p.y / resolution_m_)) - first_.y * kSide;
+    if (x < 0 || y < 0 || x >= across_ * kSide || y >= down_ * kSide) return nullptr;
+    const auto* tile = tiles_[static_cast<std::size_t>((y / kSide) * across_ + x / kSide)];
+    if (tile == nullptr) return nullptr;
+    return &(*tile)[static_cast<std::size_t>((y % kSide) * kSide + x % kSide)];
   }
 
  private:
-  void mark(maps::Cell cell, double amount) {
-    if (!geometry_.contains(cell)) return;
-    const std::size_t i = geometry_.index_of(cell);
-    if (stamp_[i] == scan_) return;
-    stamp_[i] = scan_;
-    seen_[i] = 1;
-    log_odds_[i] = static_cast<float>(std::clamp(log_odds_[i] + amount, -kLimit, kLimit));
-  }
+  TPose2D patch_from_map_;
+  double resolution_m_;
+  EvidencePatch::TileIndex first_{};
+  int across_ = 0, down_ = 0;
+  std::vector<const EvidencePatch::Tile*> tiles_;
+  Box box_;
+};
 
-  void clear_ray(const TPoint2D& from, const TPoint2D& to) {
-    const double length = maps::distance(from, to);
-    const int steps = static_cast<int>(length / (0.5 * geometry_.resolution_m));
-    if (steps < 1) return;
-    const double dx = (to.x - from.x) / length, dy = (to.y - from.y) / length;
-    // The last cell is left alone: what stopped the ray may reach into it.
-    const double end = length - 0.7 * geometry_.resolution_m;
-    for (int i = 0; i <= steps; ++i) {
-      const double r = 0.5 * geometry_.resolution_m * i;
-      if (r > end) break;
-      mark(geometry_.cell_at({from.x + r * dx, from.y + r * dy}),
-           r < kBlindM ? -kBlindMiss : -kMiss);
+maps::GridGeometry geometry_of(const std::vector<Layer>& layers, double resolution_m) {
+  Box box;
+  for (const Layer& l : layers) {
+    if (l.box().x1 < l.box().x0) continue;
+    box.add({l.box().x0, l.box().y0});
+    box.add({l.box().x1, l.box().y1});
+  }
+  if (box.x1 < box.x0) box = {-0.5, -0.5, 0.5, 0.5};
+  // Whole multiples of the resolution, so that maps of one place line up cell by cell, and patches
+  // that were not moved are copied as they are.
+  const double r = resolution_m;
+  maps::GridGeometry g;
+  g.resolution_m = r;
+  g.origin = {std::floor(box.x0 / r + 0.01) * r, std::floor(box.y0 / r + 0.01) * r};
+  const auto cells = [&](double from, double to) {
+    return std::clamp(static_cast<int>(std::ceil((to - from) / r - 0.01)), 1, kMostCells);
+  };
+  g.width = cells(g.origin.x, box.x1);
+  g.height = cells(g.origin.y, box.y1);
+  return g;
+}
+
+using BandSums = std::array<std::int32_t, kHeightBands>;
+
+/// Adds one layer to rows [y0, y1) of the grid.
+void add_layer(const Layer& layer, const maps::GridGeometry& g, int y0, int y1,
+               std::vector<BandSums>& sums) {
+  const double r = g.resolution_m;
+  const auto cell = [&](double at, double origin) {
+    return static_cast<int>(std::floor((at - origin) / r));
+  };
+  const int x_begin = std::max(0, cell(layer.box().x0, g.origin.x));
+  const int x_end = std::min(g.width, cell(layer.box().x1, g.origin.x) + 1);
+  const int y_begin = std::max(y0, cell(layer.box().y0, g.origin.y));
+  const int y_end = std::min(y1, cell(layer.box().y1, g.origin.y) + 1);
+  for (int y = y_begin; y < y_end; ++y) {
+    for (int x = x_begin; x < x_end; ++x) {
+      const CellEvidence* e = layer.at(g.center_of({x, y}));
+      if (e == nullptr) continue;
+      BandSums& sum = sums[static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(g.width) +
+                           static_cast<std::size_t>(x)];
+      for (std::size_t b = 0; b < sum.size(); ++b) sum[b] += (*e)[b];
     }
   }
+}
 
-  maps::GridGeometry geometry_;
-  std::vector<float> log_odds_;
-  std::vector<std::uint8_t> seen_;
-  std::vector<std::uint32_t> stamp_;
-  std::uint32_t scan_ = 0;
-};
+std::int8_t percent(double steps) {
+  const double p = 1.0 - 1.0 / (1.0 + std::exp(std::clamp(steps / kStepsPerLogOdds, -6.0, 6.0)));
+  return static_cast<std::int8_t>(std::lround(100.0 * p));
+}
+
+std::int8_t decide(const BandSums& sums, CellBands& bands) {
+  for (std::size_t b = 0; b < sums.size(); ++b) {
+    if (sums[b] >= kOccupiedSteps) bands.occupied |= static_cast<std::uint16_t>(1U << b);
+    if (sums[b] <= kFreeSteps) bands.free |= static_cast<std::uint16_t>(1U << b);
+  }
+  // What is decided lies beyond map_server's thresholds (0.65 and 0.196), however little evidence
+  // decided it.
+  if (bands.occupied != 0) {
+    return std::max<std::int8_t>(percent(*std::max_element(sums.begin(), sums.end())), 65);
+  }
+  if ((bands.free & kUpperBands) != kUpperBands) return maps::OccupancyGrid::kUnknown;
+  const auto worst = *std::max_element(sums.begin() + kHeightBands / 2, sums.end());
+  return std::min<std::int8_t>(percent(worst), 19);
+}
 
 }  // namespace
 
-maps::OccupancyGrid render_grid(const GridRequest& request, const GridConfig& config) {
-  Evidence evidence(geometry_of(request, config));
-  for (const PlacedScan& placed : request.scans) evidence.add(placed);
-  for (const TPose2D& pose : request.driven) evidence.add_driven(pose, request.driven_radius_m);
-  return evidence.grid();
+maps::OccupancyGrid render_grid(const std::vector<PlacedPatch>& patches, const GridConfig& config) {
+  std::vector<Layer> layers;
+  layers.reserve(patches.size());
+  for (const PlacedPatch& p : patches) layers.emplace_back(p, config.grid_resolution_m);
+  maps::OccupancyGrid grid(geometry_of(layers, config.grid_resolution_m));
+  const maps::GridGeometry& g = grid.geometry;
+  std::vector<CellBands> bands(g.size());
+  std::vector<BandSums> sums;
+  for (int y0 = 0; y0 < g.height; y0 += kStripRows) {
+    const int y1 = std::min(g.height, y0 + kStripRows);
+    sums.assign(static_cast<std::size_t>(y1 - y0) * static_cast<std::size_t>(g.width), BandSums{});
+    for (const Layer& layer : layers) add_layer(layer, g, y0, y1, sums);
+    const std::size_t first = g.index_of({0, y0});
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      grid.cells[first + i] = decide(sums[i], bands[first + i]);
+    }
+  }
+  fill_overhangs(bands, grid);
+  return grid;
 }
 
 }  // namespace rovigo::slam

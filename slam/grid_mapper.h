@@ -1,28 +1,24 @@
 #pragma once
-// The occupancy grid from flat depth scans and the poses they were taken at (log-odds: Moravec &
-// Elfes 1985; Thrun, Burgard & Fox, Probabilistic Robotics, chapter 9).
+// The occupancy grid from patches of evidence and where they lie (log-odds summed: Moravec & Elfes
+// 1985; Thrun, Burgard & Fox, Probabilistic Robotics, chapter 9).
 
 #include <vector>
 
 #include "maps/occupancy_grid.h"
-#include "slam/depth_scan.h"
+#include "slam/evidence_patch.h"
+#include "slam/slam_config.h"
 
 namespace rovigo::slam {
 
-struct PlacedScan {
-  TPose2D map_from_level;
-  const DepthScan* scan = nullptr;
+struct PlacedPatch {
+  TPose2D map_from_patch;
+  const EvidencePatch* patch = nullptr;
 };
 
-struct GridRequest {
-  std::vector<PlacedScan> scans;
-  std::vector<TPose2D> driven;  ///< where the rover's own body has been: free for certain
-  double driven_radius_m = 0.0;
-};
-
-/// A grid around everything that was seen. Cells without evidence are unknown. A hit outweighs the
-/// rays of its own scan that pass over the cell. Rays clear every cell they cross below obstacle
-/// height, whatever they end on.
-maps::OccupancyGrid render_grid(const GridRequest& request, const GridConfig& config);
+/// A grid around everything that was seen. A cell is occupied when any of its height bands is, and
+/// free when rays crossed all of its upper half: what is open below but hidden above (under a
+/// table's top) is unknown, or occupied where it lies between the top's edges. Cells without
+/// evidence are unknown.
+maps::OccupancyGrid render_grid(const std::vector<PlacedPatch>& patches, const GridConfig& config);
 
 }  // namespace rovigo::slam

@@ -1,16 +1,18 @@
 #pragma once
-// Flat scans from stored keyframes, for a camera whose height over the floor nobody has told us.
+// Stored keyframes brought upright, for a camera whose height over the floor nobody has told us.
 
 #include <vector>
 
-#include "slam/depth_scan.h"
 #include "slam/landmark_map.h"
 
 namespace rovigo::slam {
 
-struct KeyframeScan {
-  TPose2D map_from_level;
-  DepthScan scan;
+inline constexpr double kStoredDepthUnitM = 0.001;  ///< of a keyframe's depth image
+
+/// Where the camera of a keyframe was, above the floor below it.
+struct LevelView {
+  int keyframe = 0;
+  Se3 level_from_camera;
 };
 
 /// Height of the floor in the map frame: the lowest level on which surfaces gather. Points
@@ -18,8 +20,7 @@ struct KeyframeScan {
 /// that no ground is called free that was not looked at.
 double estimate_floor_height(const std::vector<float>& heights_m);
 
-/// One scan of each keyframe, upright by the map's vertical, above the estimated floor. Keyframes
-/// without depth are left out.
-std::vector<KeyframeScan> scans_of_keyframes(const LandmarkMap& map, DepthScanner& scanner);
+/// The keyframes that have depth, upright by the map's vertical, above the estimated floor.
+std::vector<LevelView> level_views(const LandmarkMap& map);
 
 }  // namespace rovigo::slam

@@ -433,7 +433,7 @@ maps::SavedMap Slam::finish() {
   out.keyframes = store_keyframes(s.map);
   out.edges = store_edges(s.edges);
   out.trajectory = s.history.poses(s.map);
-  out.grid = s.surroundings.render(s.map, s.history);
+  out.grid = s.surroundings.render(s.map);
   return out;
 }
 

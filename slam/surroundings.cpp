@@ -1,6 +1,10 @@
 #include "slam/surroundings.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "slam/grid_mapper.h"
+#include "slam/keyframe_codec.h"
 #include "slam/keyframe_scans.h"
 #include "slam/local_map.h"
 
@@ -8,8 +12,18 @@ namespace rovigo::slam {
 
 namespace {
 
-constexpr double kScanSpacing = 0.15;  // in units of the keyframe spacing
+constexpr double kLookSpacing = 0.15;  // in units of the keyframe spacing
 constexpr double kBodyRadiusM = 0.20;  // half the rover's width: where it was is free
+constexpr double kPatchRadiusM = 0.75;
+constexpr int kMinShared = 20;  // landmarks, for keyframes to hang together rigidly
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+/// The frame of a patch: the map's axes as they are now, from a corner of a cell, so that patches
+/// nothing has moved since lie on the map's cells exactly.
+TPose2D frame_at(const Se3& map_from_base, double resolution_m) {
+  const auto snap = [&](double v) { return std::round(v / resolution_m) * resolution_m; };
+  return {snap(map_from_base.translation.x()), snap(map_from_base.translation.y()), 0.0};
+}
 
 }  // namespace
 
@@ -18,38 +32,95 @@ Surroundings::Surroundings(const SlamConfig& config, const CameraModel& camera,
     : config_(config),
       base_from_camera_(base_from_camera),
       on_floor_(on_floor),
-      scanner_(camera, config.grid, config.depth) {}
+      scanner_(camera, config.depth),
+      voter_(config.grid, config.depth) {}
+
+/// The patch of a keyframe close by that is tied to this one by what both see; or the one in use.
+std::size_t Surroundings::nearby_patch(const LandmarkMap& map, int keyframe) const {
+  const Se3& here = map.keyframe(keyframe).map_from_base;
+  const auto distance_to = [&](std::size_t i) {
+    return (map.keyframe(patches_[i].keyframe).map_from_base.translation - here.translation).norm();
+  };
+  std::vector<int> tied;
+  if (last_keyframe_ >= 0) tied.push_back(last_keyframe_);
+  for (const auto& [id, shared] : map.covisible(keyframe, kMinShared)) tied.push_back(id);
+  std::size_t best = kNone;
+  for (const int id : tied) {
+    const auto found = patch_of_keyframe_.find(id);
+    if (found == patch_of_keyframe_.end()) continue;
+    if (distance_to(found->second) > kPatchRadiusM) continue;
+    if (best == kNone || distance_to(found->second) < distance_to(best)) best = found->second;
+  }
+  return best;
+}
+
+std::size_t Surroundings::patch_of(const LandmarkMap& map, int keyframe) {
+  const auto known = patch_of_keyframe_.find(keyframe);
+  if (known != patch_of_keyframe_.end()) return known->second;
+  std::size_t patch = nearby_patch(map, keyframe);
+  if (patch == kNone) {
+    patch = patches_.size();
+    const Se3& map_from_keyframe = map.keyframe(keyframe).map_from_base;
+    patches_.push_back({keyframe,
+                        maps::compose(maps::inverse(to_planar(map_from_keyframe)),
+                                      frame_at(map_from_keyframe, config_.grid.grid_resolution_m)),
+                        {}});
+  }
+  patch_of_keyframe_[keyframe] = patch;
+  return patch;
+}
+
+void Surroundings::add(const cv::Mat& depth, double unit_m, const Se3& level_from_camera,
+                       const TPose2D& patch_from_level, EvidencePatch& patch) {
+  voter_.vote(scanner_.scan(depth, unit_m, level_from_camera), patch_from_level, patch);
+}
 
 void Surroundings::look(const CameraFrame& frame, const LandmarkMap& map, int keyframe,
                         const Se3& pose) {
   if (!on_floor_ || frame.depth.empty() || keyframe < 0) return;
   const bool moved =
-      scans_.empty() || keyframe_spacing(last_pose_, pose, config_.tracking) >= kScanSpacing;
+      last_keyframe_ < 0 || keyframe_spacing(last_pose_, pose, config_.tracking) >= kLookSpacing;
   if (!moved) return;
+  AnchoredPatch& patch = patches_[patch_of(map, keyframe)];
   last_pose_ = pose;
-  scans_.push_back({keyframe, map.keyframe(keyframe).map_from_base.inverse() * pose,
-                    scanner_.scan(frame.depth, frame.depth_unit_m, base_from_camera_)});
+  last_keyframe_ = keyframe;
+  const TPose2D map_from_patch = maps::compose(
+      to_planar(map.keyframe(patch.keyframe).map_from_base), patch.keyframe_from_patch);
+  const TPose2D patch_from_level = maps::compose(maps::inverse(map_from_patch), to_planar(pose));
+  add(frame.depth, frame.depth_unit_m, base_from_camera_, patch_from_level, patch.evidence);
+  voter_.vote_driven(maps::position_of(patch_from_level), kBodyRadiusM, patch.evidence);
 }
 
-maps::OccupancyGrid Surroundings::render(const LandmarkMap& map, const TrajectoryHistory& history) {
-  GridRequest request;
-  for (const AnchoredScan& s : scans_) {
-    const Se3 pose = map.keyframe(s.keyframe).map_from_base * s.keyframe_from_base;
-    request.scans.push_back({to_planar(pose), &s.scan});
+/// For a camera that nobody knows the height of: evidence from the stored keyframes, one patch
+/// each.
+void Surroundings::add_keyframes(const LandmarkMap& map) {
+  patches_.clear();
+  for (const LevelView& view : level_views(map)) {
+    const Keyframe& k = map.keyframe(view.keyframe);
+    const TPose2D map_from_patch = frame_at(k.map_from_base, config_.grid.grid_resolution_m);
+    const TPose2D map_from_level = to_planar(k.map_from_base);
+    patches_.push_back({k.id, maps::compose(maps::inverse(map_from_level), map_from_patch), {}});
+    add(decode_depth(k.depth_png, {map.camera().width(), map.camera().height()}), kStoredDepthUnitM,
+        view.level_from_camera, maps::compose(maps::inverse(map_from_patch), map_from_level),
+        patches_.back().evidence);
   }
-  std::vector<KeyframeScan> of_keyframes;
-  if (on_floor_) {
-    for (const maps::StoredPose& p : history.poses(map)) {
-      request.driven.push_back(to_planar(from_mrpt(p.map_from_base)));
-    }
-    request.driven_radius_m = kBodyRadiusM;
-  } else {
-    of_keyframes = scans_of_keyframes(map, scanner_);
-    for (const KeyframeScan& s : of_keyframes) {
-      request.scans.push_back({s.map_from_level, &s.scan});
-    }
+}
+
+maps::OccupancyGrid Surroundings::render(const LandmarkMap& map) {
+  if (!on_floor_) add_keyframes(map);
+  std::vector<PlacedPatch> placed;
+  for (const AnchoredPatch& p : patches_) {
+    placed.push_back(
+        {maps::compose(to_planar(map.keyframe(p.keyframe).map_from_base), p.keyframe_from_patch),
+         &p.evidence});
   }
-  return render_grid(request, config_.grid);
+  return render_grid(placed, config_.grid);
+}
+
+std::size_t Surroundings::memory_bytes() const {
+  std::size_t sum = 0;
+  for (const AnchoredPatch& p : patches_) sum += p.evidence.memory_bytes();
+  return sum;
 }
 
 }  // namespace rovigo::slam

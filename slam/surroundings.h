@@ -1,41 +1,57 @@
 #pragma once
-// What the depth camera saw of the ground on the way, kept until the poses are final.
+// What the depth camera saw of the ground on the way, kept as evidence that follows the keyframes.
 
+#include <map>
 #include <vector>
 
 #include "maps/occupancy_grid.h"
 #include "slam/camera_frame.h"
 #include "slam/depth_scan.h"
+#include "slam/evidence_patch.h"
 #include "slam/landmark_map.h"
-#include "slam/trajectory_history.h"
+#include "slam/ray_voter.h"
 
 namespace rovigo::slam {
 
+/// Built online: each frame adds to the evidence of one patch, and the grid can be rendered at any
+/// time from the poses the keyframes then have. A patch serves all keyframes close to the one it
+/// hangs on, so memory grows with the space seen and not with the time spent in it.
 class Surroundings {
  public:
-  /// `on_floor`: the camera's height over the floor is known; otherwise scans are made from the
+  /// `on_floor`: the camera's height over the floor is known; otherwise evidence is taken from the
   /// keyframes in the end, when the floor can be estimated.
   Surroundings(const SlamConfig& config, const CameraModel& camera, const Se3& base_from_camera,
                bool on_floor);
 
-  /// Keeps a flat scan, relative to `keyframe`, wherever the view has changed a little.
+  /// Adds what a frame shows, relative to `keyframe`, whenever the view has changed a little.
   void look(const CameraFrame& frame, const LandmarkMap& map, int keyframe, const Se3& pose);
 
   /// The grid, from the poses as the keyframes are now.
-  maps::OccupancyGrid render(const LandmarkMap& map, const TrajectoryHistory& history);
+  maps::OccupancyGrid render(const LandmarkMap& map);
+
+  std::size_t memory_bytes() const;
 
  private:
-  struct AnchoredScan {
+  struct AnchoredPatch {
     int keyframe = 0;
-    Se3 keyframe_from_base;
-    DepthScan scan;
+    TPose2D keyframe_from_patch;
+    EvidencePatch evidence;
   };
+
+  std::size_t patch_of(const LandmarkMap& map, int keyframe);
+  std::size_t nearby_patch(const LandmarkMap& map, int keyframe) const;
+  void add_keyframes(const LandmarkMap& map);
+  void add(const cv::Mat& depth, double unit_m, const Se3& level_from_camera,
+           const TPose2D& patch_from_level, EvidencePatch& patch);
 
   SlamConfig config_;
   Se3 base_from_camera_;
   bool on_floor_;
   DepthScanner scanner_;
-  std::vector<AnchoredScan> scans_;
+  RayVoter voter_;
+  std::vector<AnchoredPatch> patches_;
+  std::map<int, std::size_t> patch_of_keyframe_;
+  int last_keyframe_ = -1;
   Se3 last_pose_;
 };
 

@@ -9,6 +9,7 @@
 #include "slam/depth_scan.h"
 #include "slam/features.h"
 #include "slam/pose_optimizer.h"
+#include "slam/ray_voter.h"
 
 namespace rovigo::slam {
 namespace {
@@ -86,15 +87,17 @@ void MatchThousandAgainstThousand(benchmark::State& state) {
 }
 BENCHMARK(MatchThousandAgainstThousand)->Unit(benchmark::kMillisecond);
 
-void FlattenDepth(benchmark::State& state) {
+void GridEvidenceOfAFrame(benchmark::State& state) {
   const CameraModel model = camera();
-  DepthScanner scanner(model, GridConfig{}, DepthConfig{});
+  DepthScanner scanner(model, DepthConfig{});
+  RayVoter voter(GridConfig{}, DepthConfig{});
+  EvidencePatch patch;
   const CameraFrame frame = busy_frame();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(scanner.scan(frame.depth, 0.001, forward_camera()));
+    voter.vote(scanner.scan(frame.depth, 0.001, forward_camera()), {0, 0, 0}, patch);
   }
 }
-BENCHMARK(FlattenDepth)->Unit(benchmark::kMillisecond);
+BENCHMARK(GridEvidenceOfAFrame)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace rovigo::slam

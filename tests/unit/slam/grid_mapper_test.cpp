@@ -3,6 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
+#include "slam/depth_scan.h"
+#include "slam/ray_voter.h"
 
 namespace rovigo::slam {
 namespace {
@@ -24,99 +29,181 @@ Se3 level_camera() {
   return s;
 }
 
-/// Depth of a wall across the view at `wall_m`, between two heights, over a floor; what is above
-/// the wall shows a second wall far behind.
-cv::Mat view(const CameraModel& camera, double wall_m, double low_m, double high_m, double far_m) {
+/// Something across the whole view, from x0 to x1 ahead and between two heights.
+struct Slab {
+  double x0 = 0, x1 = 0, low = 0, high = 0;
+
+  /// Where a ray from the camera enters it, along x; infinite when it does not.
+  double entered_at(double rise) const {
+    const double none = std::numeric_limits<double>::infinity();
+    if (rise == 0.0) return low <= kCameraHeightM && kCameraHeightM <= high ? x0 : none;
+    const double a = (low - kCameraHeightM) / rise, b = (high - kCameraHeightM) / rise;
+    const double begin = std::max(x0, std::min(a, b)), end = std::min(x1, std::max(a, b));
+    return begin <= end && begin > 0 ? begin : none;
+  }
+};
+
+/// Depth as a level camera at the origin sees slabs over a floor.
+cv::Mat view(const CameraModel& camera, const std::vector<Slab>& slabs) {
   cv::Mat depth(480, 640, CV_16UC1, cv::Scalar(0));
   for (int v = 0; v < 480; ++v) {
-    for (int u = 0; u < 640; ++u) {
-      const double down = camera.unproject({u, v}, 1.0).y();
-      const double at_wall = kCameraHeightM - down * wall_m;
-      double z = far_m;
-      if (down > 0) z = std::min(z, kCameraHeightM / down);  // floor
-      if (at_wall >= low_m && at_wall <= high_m) z = std::min(z, wall_m);
-      depth.at<std::uint16_t>(v, u) = static_cast<std::uint16_t>(std::lround(1000 * z));
-    }
+    const double rise = -camera.unproject({0, v}, 1.0).y();
+    double z = rise < 0 ? -kCameraHeightM / rise : 1e9;
+    for (const Slab& s : slabs) z = std::min(z, s.entered_at(rise));
+    if (z > 6.0) continue;
+    depth.row(v).setTo(static_cast<std::uint16_t>(std::lround(1000 * z)));
   }
   return depth;
 }
 
-class Scanning : public ::testing::Test {
+Slab wall(double at_m) { return {at_m, at_m + 0.1, 0.0, 2.5}; }
+
+class Mapping : public ::testing::Test {
  protected:
-  DepthScan scan(double wall_m, double low_m, double high_m, double far_m) {
-    return scanner_.scan(view(camera_, wall_m, low_m, high_m, far_m), 0.001, level_camera());
+  void look(const cv::Mat& depth, int times, const TPose2D& from = {0, 0, 0}) {
+    for (int i = 0; i < times; ++i) {
+      voter_.vote(scanner_.scan(depth, 0.001, level_camera()), from, patch_);
+    }
   }
-  maps::OccupancyGrid grid_of(const DepthScan& scan, int times) {
-    GridRequest request;
-    for (int i = 0; i < times; ++i) request.scans.push_back({{0, 0, 0}, &scan});
-    return render_grid(request, config_);
+  void look_at(const std::vector<Slab>& slabs, int times, const TPose2D& from = {0, 0, 0}) {
+    look(view(camera_, slabs), times, from);
   }
+  maps::OccupancyGrid grid() const { return render_grid({{{0, 0, 0}, &patch_}}, config_); }
   static std::int8_t value(const maps::OccupancyGrid& g, double x, double y) {
     const maps::Cell c = g.geometry.cell_at({x, y});
     return g.geometry.contains(c) ? g.at(c) : maps::OccupancyGrid::kUnknown;
   }
+  static bool occupied(const maps::OccupancyGrid& g, double x, double y) {
+    return maps::OccupancyGrid::is_occupied(value(g, x, y));
+  }
+  static bool free(const maps::OccupancyGrid& g, double x, double y) {
+    return maps::OccupancyGrid::is_free(value(g, x, y));
+  }
+  static bool unknown(const maps::OccupancyGrid& g, double x, double y) {
+    return maps::OccupancyGrid::is_unknown(value(g, x, y));
+  }
 
   CameraModel camera_{intrinsics()};
   GridConfig config_;
-  DepthScanner scanner_{camera_, config_, DepthConfig{}};
+  DepthScanner scanner_{camera_, DepthConfig{}};
+  RayVoter voter_{config_, DepthConfig{}};
+  EvidencePatch patch_;
 };
 
-TEST_F(Scanning, AWallIsAnObstacleAndTheGroundBeforeItIsFree) {
-  const DepthScan s = scan(2.0, 0.0, 2.0, 5.0);
-  const auto g = grid_of(s, 5);
-  EXPECT_TRUE(maps::OccupancyGrid::is_occupied(value(g, 2.02, 0.0)));
-  EXPECT_TRUE(maps::OccupancyGrid::is_free(value(g, 1.0, 0.0)));
-  EXPECT_TRUE(maps::OccupancyGrid::is_unknown(value(g, 2.5, 0.0))) << "behind the wall";
+TEST_F(Mapping, AWallIsAnObstacleAndTheGroundBeforeItIsFree) {
+  look_at({wall(2.02)}, 3);
+  EXPECT_TRUE(occupied(grid(), 2.02, 0.0));
+  EXPECT_TRUE(free(grid(), 1.0, 0.0));
+  EXPECT_TRUE(unknown(grid(), 2.5, 0.0)) << "behind the wall";
 }
 
-TEST_F(Scanning, TheFloorAloneIsNoObstacle) {
-  const DepthScan s = scan(10.0, 0.0, 0.0, 5.9);
-  EXPECT_TRUE(s.hits.empty());
-  EXPECT_TRUE(maps::OccupancyGrid::is_free(value(grid_of(s, 5), 2.0, 0.0)));
+TEST_F(Mapping, TheFloorAloneIsNoObstacle) {
+  for (int i = 0; i < 8; ++i) look_at({wall(5.9)}, 1, {-0.013 * i, 0.0, 0.0});
+  for (double x = 0.6; x < 5.0; x += 0.05) EXPECT_TRUE(free(grid(), x, 0.0)) << x;
 }
 
-TEST_F(Scanning, ADoorSillBelowTheObstacleHeightIsFloor) {
-  EXPECT_TRUE(scan(1.5, 0.0, 0.03, 5.9).hits.empty());
+TEST_F(Mapping, ADoorSillBelowTheObstacleHeightIsFloor) {
+  look_at({{1.5, 1.6, 0.0, 0.03}, wall(4.02)}, 5);
+  EXPECT_TRUE(free(grid(), 1.5, 0.0));
 }
 
-TEST_F(Scanning, ATopThatCanBeDrivenUnderIsIgnoredAndClearedBelow) {
-  const DepthScan s = scan(2.0, 0.70, 0.80, 4.0);  // a desk top and a wall behind it
-  const auto g = grid_of(s, 5);
-  EXPECT_TRUE(maps::OccupancyGrid::is_free(value(g, 2.02, 0.0)));
-  EXPECT_TRUE(maps::OccupancyGrid::is_occupied(value(g, 4.02, 0.0)));
+TEST_F(Mapping, ATopThatCanBeDrivenUnderIsIgnoredAndFreeBelow) {
+  look_at({{2.0, 2.7, 0.70, 0.75}, wall(4.02)}, 5);  // a desk top and a wall behind it
+  EXPECT_TRUE(free(grid(), 2.02, 0.0));
+  EXPECT_TRUE(occupied(grid(), 4.02, 0.0));
 }
 
-TEST_F(Scanning, ALowBoxStaysThoughRaysPassOverIt) {
-  const DepthScan s = scan(1.5, 0.0, 0.15, 4.0);
-  const auto g = grid_of(s, 20);
-  EXPECT_TRUE(maps::OccupancyGrid::is_occupied(value(g, 1.52, 0.0)));
-  EXPECT_TRUE(maps::OccupancyGrid::is_occupied(value(g, 4.02, 0.0)));
+TEST_F(Mapping, ALowBoxStaysThoughRaysPassOverIt) {
+  look_at({{1.52, 1.7, 0.0, 0.15}, wall(4.02)}, 40);
+  EXPECT_TRUE(occupied(grid(), 1.52, 0.0));
+  EXPECT_TRUE(occupied(grid(), 4.02, 0.0));
 }
 
-TEST_F(Scanning, SomethingThatLeftIsCleared) {
-  const DepthScan with = scan(1.5, 0.0, 2.0, 4.0);
-  const DepthScan without = scan(10.0, 0.0, 0.0, 4.0);
-  GridRequest request;
-  for (int i = 0; i < 3; ++i) request.scans.push_back({{0, 0, 0}, &with});
-  for (int i = 0; i < 20; ++i) request.scans.push_back({{0, 0, 0}, &without});
-  EXPECT_TRUE(maps::OccupancyGrid::is_free(value(render_grid(request, config_), 1.52, 0.0)));
+TEST_F(Mapping, ALowTablesEdgeStaysThoughRaysPassBelowIt) {
+  look_at({{1.52, 2.07, 0.38, 0.42}, wall(4.02)}, 40);
+  EXPECT_TRUE(occupied(grid(), 1.52, 0.0));
 }
 
-TEST_F(Scanning, AnImageWithoutReturnsSaysNothing) {
-  const cv::Mat nothing(480, 640, CV_16UC1, cv::Scalar(0));
-  const DepthScan s = scanner_.scan(nothing, 0.001, level_camera());
-  EXPECT_TRUE(s.hits.empty());
-  const auto g = grid_of(s, 3);
-  for (const auto cell : g.cells) EXPECT_EQ(cell, maps::OccupancyGrid::kUnknown);
+TEST_F(Mapping, ATableSeenEdgeOnFromBothEndsIsAnObstacleInBetween) {
+  look_at({{1.52, 2.12, 0.38, 0.42}, wall(4.02)}, 5);
+  look_at({{1.52, 2.12, 0.38, 0.42}, wall(4.02)}, 5, {3.64, 0.0, maps::kPi});  // its other edge
+  for (double x = 1.55; x < 2.04; x += 0.05) EXPECT_TRUE(occupied(grid(), x, 0.0)) << x;
 }
 
-TEST_F(Scanning, WhereTheRoverWasIsFree) {
-  GridRequest request;
-  request.driven = {{1.0, 1.0, 0.0}, {1.0, 1.0, 0.0}};
-  request.driven_radius_m = 0.2;
-  const auto g = render_grid(request, config_);
-  EXPECT_TRUE(maps::OccupancyGrid::is_free(value(g, 1.1, 1.0)));
-  EXPECT_TRUE(maps::OccupancyGrid::is_unknown(value(g, 1.4, 1.0)));
+TEST_F(Mapping, WhatIsHiddenBehindATablesEdgeIsNotFree) {
+  look_at({{1.52, 2.07, 0.38, 0.42}, wall(4.02)}, 20);
+  EXPECT_FALSE(free(grid(), 1.70, 0.0));
+}
+
+TEST_F(Mapping, SomethingThatLeftIsCleared) {
+  look_at({{1.5, 1.8, 0.0, 1.8}, wall(4.0)}, 3);
+  EXPECT_TRUE(occupied(grid(), 1.5, 0.0));
+  look_at({wall(4.0)}, 8);
+  EXPECT_TRUE(free(grid(), 1.5, 0.0));
+}
+
+TEST_F(Mapping, RaysOverSomethingLowDoNotClearIt) {
+  look_at({{1.5, 1.8, 0.0, 0.15}, wall(4.0)}, 3);
+  cv::Mat upper_part = view(camera_, {wall(4.0)});
+  for (int v = 0; v < 480; ++v) {  // nothing returns from where the low thing was
+    if (camera_.unproject({0, v}, 1.5).y() > kCameraHeightM - 0.16) upper_part.row(v).setTo(0);
+  }
+  look(upper_part, 30);
+  EXPECT_TRUE(occupied(grid(), 1.5, 0.0));
+}
+
+TEST_F(Mapping, ReturnsFromBelowTheFloorMarkNothing) {
+  // A mirror of a floor: where it should be at 1 to 3 m, the wall's image lies twice as deep.
+  cv::Mat depth = view(camera_, {wall(3.02)});
+  for (int v = 300; v < 480; ++v) depth.row(v).setTo(3020);
+  look(depth, 10);
+  EXPECT_TRUE(free(grid(), 1.5, 0.0));
+  EXPECT_TRUE(occupied(grid(), 3.02, 0.0));
+}
+
+TEST_F(Mapping, AnImageWithoutReturnsSaysNothing) {
+  look(cv::Mat(480, 640, CV_16UC1, cv::Scalar(0)), 3);
+  for (const auto cell : grid().cells) EXPECT_EQ(cell, maps::OccupancyGrid::kUnknown);
+}
+
+TEST_F(Mapping, WhereTheRoverWasIsFree) {
+  voter_.vote_driven({1.0, 1.0}, 0.2, patch_);
+  EXPECT_TRUE(free(grid(), 1.1, 1.0));
+  EXPECT_TRUE(unknown(grid(), 1.4, 1.0));
+}
+
+TEST_F(Mapping, PatchesMoveWithTheirKeyframes) {
+  look_at({wall(2.02)}, 3);
+  const auto moved = render_grid({{{1.0, 0.5, maps::kPi / 2}, &patch_}}, config_);
+  EXPECT_TRUE(occupied(moved, 1.0, 2.52));
+  EXPECT_TRUE(free(moved, 1.0, 1.5));
+}
+
+TEST_F(Mapping, TheOrderOfPatchesDoesNotMatter) {
+  EvidencePatch other;
+  look_at({wall(2.02)}, 3);
+  voter_.vote(
+      scanner_.scan(view(camera_, {{1.5, 1.7, 0.0, 0.3}, wall(4.0)}), 0.001, level_camera()),
+      {0, 0, 0}, other);
+  const PlacedPatch a{{0.3, 0.2, 0.1}, &patch_}, b{{0.1, 0.4, -0.2}, &other};
+  EXPECT_EQ(render_grid({a, b}, config_).cells, render_grid({b, a}, config_).cells);
+}
+
+TEST_F(Mapping, MemoryDoesNotGrowWhileTheSameIsSeen) {
+  const cv::Mat depth = view(camera_, {wall(3.0)});
+  look(depth, 1);
+  const std::size_t once = patch_.memory_bytes();
+  look(depth, 50);
+  EXPECT_EQ(patch_.memory_bytes(), once);
+  EXPECT_LT(once, 200000u);
+}
+
+TEST_F(Mapping, ASmallerDepthImageGivesTheSameWalls) {
+  cv::Mat small;
+  cv::resize(view(camera_, {wall(2.02)}), small, {160, 120}, 0, 0, cv::INTER_NEAREST);
+  look(small, 3);
+  EXPECT_TRUE(occupied(grid(), 2.02, 0.0));
+  EXPECT_TRUE(free(grid(), 1.0, 0.0));
 }
 
 }  // namespace
