@@ -37,10 +37,10 @@ constexpr int kSearchEverywhereEvery = 5;  // frames without a match
 constexpr int kSearchWhenLostEvery = 2;
 constexpr int kFewInliers = 120;  // fewer leave the heading to noise: walls are asked too
 constexpr int kMinWallPoints = 30;
-constexpr double kMinWallShare = 0.7;  // of the points that must lie on the walls
-constexpr int kWallKeyframes = 3;      // whose walls are looked at together
-constexpr double kBlindSpacing = 3.0;  // of keyframes in places that show nothing
-constexpr double kFoundSigmaM = 0.05;  // of a pose found by recognising the place
+constexpr double kMinWallShare = 0.7;   // of the points that must lie on the walls
+constexpr int kWallKeyframes = 5;       // whose walls are looked at together
+constexpr double kBlindSpacing = 1.25;  // of keyframes in places that show nothing
+constexpr double kFoundSigmaM = 0.05;   // of a pose found by recognising the place
 constexpr double kFoundSigmaRad = 0.03;
 constexpr double kSurprisingM = 0.15;
 constexpr int kFinalIterations = 8;
@@ -383,13 +383,13 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
     pose = follow_walls(frame, pose);
   }
   const bool first = map.keyframes().empty();
-    fprintf(stderr,
-            "t %.1f feat %zu local %zu matches %zu inl %d tracked %d state %d sig %.3f pose %.2f "
-            "%.2f %.2f kf %zu cal %.5f %.4f\n",
-            frame.time_s, features.size(), local.landmarks.size(), result.matches.size(),
-            result.solution.inliers, tracked, (int)health.state(), prediction.sigma_position_m,
-            pose.translation.x(), pose.translation.y(), to_planar(pose).phi, map.keyframes().size(),
-            motion.dead_reckoning().calibration()(0), motion.dead_reckoning().calibration()(1));
+  fprintf(stderr,
+          "t %.1f feat %zu local %zu matches %zu inl %d tracked %d state %d sig %.3f pose %.2f "
+          "%.2f %.2f kf %zu cal %.5f %.4f\n",
+          frame.time_s, features.size(), local.landmarks.size(), result.matches.size(),
+          result.solution.inliers, tracked, (int)health.state(), prediction.sigma_position_m,
+          pose.translation.x(), pose.translation.y(), to_planar(pose).phi, map.keyframes().size(),
+          motion.dead_reckoning().calibration()(0), motion.dead_reckoning().calibration()(1));
   judge(frame.time_s, features, tracked, pose);
   if (!frame.gray.empty() && frame_joins_map(result, features, pose)) {
     insert_keyframe(frame, std::move(features), result, pose);
