@@ -134,7 +134,7 @@ Eigen::Isometry3d Ride::pose(double time_s) const {
   Eigen::Isometry3d m = Eigen::Isometry3d::Identity();
   // A rover that is taken while it drives does not stop at once.
   const double still = 1.0 - share;
-  const double glide_s = std::max(0.0, time_s - begin_s_) * still * still * still;
+  const double glide_s = (time_s - begin_s_) * still * still * still;
   m.translation() << from_.x + s * (to_.x - from_.x) + glide_s * twist_.vx,
       from_.y + s * (to_.y - from_.y) + glide_s * twist_.vy, kLiftM * up;
   m.linear() = (Eigen::AngleAxisd(from_.phi + s * turn_rad_ + glide_s * twist_.omega,

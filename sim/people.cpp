@@ -18,6 +18,9 @@ constexpr double kLeastClearanceM = 0.25;
 constexpr double kComfortM = 1.25;  // from the rover's middle: nearer, people step back
 constexpr double kReactionS = 0.3;
 constexpr double kFollowM = 5.0;  // farther from the rover, they come after it
+constexpr double kAimS = 0.1;
+constexpr auto kStraightM = static_cast<float>(kCellM);
+constexpr float kDiagonalM = kStraightM * 1.41421356F;
 constexpr float kNowhere = std::numeric_limits<float>::infinity();
 
 TPoint2D direction(const TPoint2D& from, const TPoint2D& to) {
@@ -49,10 +52,13 @@ double People::clearance(const TPoint2D& p) const {
   return maps::clearance_at(grid_, field_, p, 1.0);
 }
 
+/// By the cells' own distances: exact to half a cell, and cheap.
 bool People::is_clear(const TPoint2D& a, const TPoint2D& b, double clearance_m) const {
-  const int steps = static_cast<int>(maps::distance(a, b) / 0.05) + 1;
+  const int steps = static_cast<int>(maps::distance(a, b) / (0.5 * kCellM)) + 1;
   for (int i = 0; i <= steps; ++i) {
-    if (clearance(a + (b - a) * (static_cast<double>(i) / steps)) < clearance_m) return false;
+    const maps::Cell c = grid_.geometry.cell_at(a + (b - a) * (static_cast<double>(i) / steps));
+    if (!grid_.geometry.contains(c) || !maps::OccupancyGrid::is_free(grid_.at(c))) return false;
+    if (static_cast<double>(field_.at(c)) < clearance_m) return false;
   }
   return true;
 }
@@ -76,11 +82,11 @@ void People::choose_target(Person& person, const TPose2D& rover) {
     break;
   }
   person.speed_m_s = random_.uniform(settings_.min_speed_m_s, settings_.max_speed_m_s);
-  person.until_choice_s = random_.uniform(3.0, 7.0);
+  person.until_choice_s = random_.uniform(2.0, 4.0);
   find_way(person, maps::position_of(rover));
 }
 
-/// Dijkstra from the target over ground where people fit, round the rover.
+/// Dijkstra from the target over ground where people fit, round the rover, as far as the person.
 void People::find_way(Person& person, const TPoint2D& rover) const {
   const auto& g = grid_.geometry;
   person.until_way_s = 0.7;
@@ -91,17 +97,21 @@ void People::find_way(Person& person, const TPoint2D& rover) const {
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   person.way_m[g.index_of(goal)] = 0.0F;
   open.emplace(0.0F, g.index_of(goal));
+  constexpr float kBeyondM = 0.3F;  // the person's neighbourhood, too
+  const maps::Cell person_cell = g.cell_at(person.at);
+  const std::size_t person_index = g.contains(person_cell) ? g.index_of(person_cell) : 0;
   while (!open.empty()) {
     const auto [so_far, index] = open.top();
     open.pop();
     if (so_far > person.way_m[index]) continue;
+    if (so_far > person.way_m[person_index] + kBeyondM) break;
     const int x = static_cast<int>(index % static_cast<std::size_t>(g.width));
     const int y = static_cast<int>(index / static_cast<std::size_t>(g.width));
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
         const maps::Cell n{x + dx, y + dy};
         if (!is_walkable(n) || maps::distance(g.center_of(n), rover) < kNearestM) continue;
-        const float total = so_far + static_cast<float>(kCellM * std::hypot(dx, dy));
+        const float total = so_far + (dx != 0 && dy != 0 ? kDiagonalM : kStraightM);
         float& known = person.way_m[g.index_of(n)];
         if (total >= known) continue;
         known = total;
@@ -151,6 +161,7 @@ void People::appear(Person& person, const TPose2D& rover) {
     if (!is_walkable(g.cell_at(p)) || in_sight) continue;
     person.at = person.target = p;
     person.velocity = TPoint2D(0.0, 0.0);
+    person.until_aim_s = 0.0;
     choose_target(person, rover);
     if (person.way_m[g.index_of(g.cell_at(p))] < kNowhere) return;  // can come and be seen
   }
@@ -158,8 +169,12 @@ void People::appear(Person& person, const TPose2D& rover) {
 
 void People::walk(Person& person, const TPose2D& rover_pose) {
   const TPoint2D rover = maps::position_of(rover_pose);
-  const TPoint2D goal = aim(person);
-  TPoint2D wanted = direction(person.at, goal) * person.speed_m_s;
+  person.until_aim_s -= kStepS;
+  if (person.until_aim_s <= 0.0) {
+    person.aim = aim(person);
+    person.until_aim_s = kAimS;
+  }
+  TPoint2D wanted = direction(person.at, person.aim) * person.speed_m_s;
   const TPoint2D out = direction(rover, person.at);
   const double away = maps::distance(rover, person.at);
   if (away < kComfortM) {

@@ -39,6 +39,8 @@ class People {
     double speed_m_s = 0.8;  ///< wanted
     double until_choice_s = 0.0;
     double until_way_s = 0.0;
+    double until_aim_s = 0.0;
+    TPoint2D aim;  ///< where it walks to in a straight line
     TPoint2D target;
     std::vector<float> way_m;  ///< per cell, to the target; infinity: cannot be reached
   };

@@ -71,10 +71,20 @@ class Body {
     box("neck", at(0, 0, 1.48), {0.11, 0.11, 0.08}, kSkin, Pattern::kPlain);
     box("head", at(0.01, 0, 1.60), {0.19, 0.16, 0.20}, kSkin, Pattern::kPlaster);
     box("hair", at(-0.02, 0, 1.71), {0.20, 0.17, 0.09}, outfit_.hair, Pattern::kNoise);
+    stand_on_floor();
     return std::move(solids_);
   }
 
  private:
+  /// Legs that swing are shorter than straight ones: the hips sink until a foot is down.
+  void stand_on_floor() {
+    double low = 1e9;
+    for (const auto& solid : solids_) {
+      for (const auto& p : corners_of(solid)) low = std::min(low, p.z());
+    }
+    for (auto& solid : solids_) solid.world_from_solid.translation().z() -= low;
+  }
+
   static constexpr Color kSkin{0.80F, 0.62F, 0.50F};
   static constexpr Color kShoe{0.12F, 0.11F, 0.11F};
 
@@ -93,8 +103,8 @@ class Body {
     constexpr double kHipM = 0.90;
     constexpr double kThighM = 0.44;
     constexpr double kShinM = 0.40;
-    const double swing = 0.45 * effort_ * std::sin(phase);
-    const double bend = 0.7 * effort_ * std::max(0.0, std::cos(phase));  // while it comes forward
+    const double swing = 0.40 * effort_ * std::sin(phase);
+    const double bend = 0.6 * effort_ * std::max(0.0, std::cos(phase));  // while it comes forward
     const std::string side = y > 0 ? "left_" : "right_";
     const Eigen::Isometry3d hip = at(0, y, kHipM) * swung(swing);
     const Eigen::Isometry3d knee = hip * at(0, 0, -kThighM) * swung(-bend);
@@ -103,8 +113,8 @@ class Body {
     box(side + "shin", knee * at(0, 0, -kShinM / 2), {0.13, 0.13, kShinM + 0.02}, outfit_.trousers,
         outfit_.trousers_pattern);
     const Eigen::Vector3d ankle = (knee * at(0, 0, -kShinM)).translation();
-    box(side + "shoe", at(ankle.x() + 0.05, ankle.y(), std::max(0.045, ankle.z())),
-        {0.28, 0.10, 0.09}, kShoe, Pattern::kPlain);
+    box(side + "shoe", at(ankle.x() + 0.05, ankle.y(), ankle.z()), {0.28, 0.10, 0.09}, kShoe,
+        Pattern::kPlain);
   }
 
   void arm(double y, double phase) {
