@@ -104,11 +104,15 @@ std::vector<bool> cells_in_view(const OccupancyGrid& truth, const std::vector<Vi
     const TPose2D& at = view.world_from_camera;
     for (double a = -field.right_rad; a <= field.left_rad; a += step_rad) {
       const double dx = std::cos(at.phi + a), dy = std::sin(at.phi + a);
-      for (double way_m = 0.0; way_m <= field.range_m; way_m += step_m) {
+      std::vector<std::size_t> passed;
+      bool met = false;
+      for (double way_m = 0.0; way_m <= field.range_m && !met; way_m += step_m) {
         const Cell c = g.cell_at(TPoint2D{at.x + way_m * dx, at.y + way_m * dy});
-        if (!g.contains(c) || !OccupancyGrid::is_free(truth.at(c))) break;
-        seen[g.index_of(c)] = true;
+        met = !g.contains(c) || !OccupancyGrid::is_free(truth.at(c));
+        if (!met) passed.push_back(g.index_of(c));
       }
+      if (!met) passed.resize(static_cast<std::size_t>(field.floor_range_m / step_m));
+      for (const std::size_t i : passed) seen[i] = true;
     }
   }
   return seen;

@@ -14,8 +14,9 @@ namespace rovigo::test {
 int ghost_cells(const maps::OccupancyGrid& estimate, const maps::OccupancyGrid& truth,
                 const TPose2D& truth_from_estimate);
 
-/// Which cells of `truth` (world frame) the camera had in view: not behind an obstacle, within its
-/// range and its horizontal field of view, from any of the true poses.
+/// Which cells of `truth` (world frame) the camera could tell to be free, from any of the true
+/// poses: before an obstacle within its range, or floor near enough to be seen. A ray that meets
+/// nothing within range has no return and shows no more than the floor nearby.
 struct View {
   TPose2D world_from_camera;  ///< heading: along the optical axis
 };
@@ -23,6 +24,7 @@ struct FieldOfView {
   double left_rad = 0.5;
   double right_rad = 0.5;
   double range_m = 6.0;
+  double floor_range_m = 1.4;  ///< farther floor is too grazing for a return
 };
 std::vector<bool> cells_in_view(const maps::OccupancyGrid& truth, const std::vector<View>& views,
                                 const FieldOfView& field);

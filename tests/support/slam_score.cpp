@@ -152,10 +152,12 @@ std::vector<View> true_views(const SlamRun& run, const Truth& truth) {
   return views;
 }
 
-FieldOfView field_of(const mrpt::img::TCamera& camera, const sim::Scenario& scenario) {
+FieldOfView field_of(const maps::MapMetadata& map, const sim::Scenario& scenario) {
+  const mrpt::img::TCamera& camera = map.camera;
+  const double steepest = scenario.camera.max_incidence_deg * maps::kPi / 180.0;
   return {std::atan2(camera.cx(), camera.fx()),
           std::atan2(static_cast<double>(camera.ncols) - camera.cx(), camera.fx()),
-          scenario.camera.max_range_m};
+          scenario.camera.max_range_m, map.base_from_camera.z() * std::tan(steepest)};
 }
 
 void score_grid(const SlamRun& run, const Truth& all_truth, const sim::Scenario& scenario,
@@ -171,7 +173,7 @@ void score_grid(const SlamRun& run, const Truth& all_truth, const sim::Scenario&
   score.recall_2 = within_2.recall;
   score.free_iou = within_2.free_iou;
   const auto in_view =
-      cells_in_view(truth, true_views(run, all_truth), field_of(run.map.metadata.camera, scenario));
+      cells_in_view(truth, true_views(run, all_truth), field_of(run.map.metadata, scenario));
   score.free_iou_in_view = free_iou_in_view(run.map.grid, truth, truth_from_map, in_view);
   score.ghost_cells = ghost_cells(run.map.grid, truth, truth_from_map);
   const sim::World world = app::open_world(simulation.world);

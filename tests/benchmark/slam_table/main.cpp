@@ -9,6 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "app/resources.h"
 #include "tests/benchmark/slam_table/table.h"
 #include "tests/support/run_rovigo.h"
 #include "tests/support/slam_case_runner.h"
@@ -126,7 +127,16 @@ int run_table(int argc, char** argv) {
   cli.add_flag("--quick", options.quick, "the short drives of the quick tests");
   cli.add_flag("--keep", options.keep, "keep the recordings");
   cli.add_flag("--list", options.list, "print the cases' names");
+  std::string recording, truth, scenario = "default";
+  auto* judged = cli.add_option("--recording", recording, "judge this recording, no case");
+  cli.add_option("--truth", truth, "its truth, a folder")->needs(judged);
+  cli.add_option("--scenario", scenario, "its scenario: when the camera was blind")->needs(judged);
   CLI11_PARSE(cli, argc, argv);
+  if (!recording.empty()) {
+    const SlamScore score = test::score_drive({recording, truth, app::open_scenario(scenario)});
+    std::printf("%s\n", to_json(score).dump(2).c_str());
+    return 0;
+  }
   std::vector<const test::SlamCase*> chosen;
   for (const auto& name : options.cases) chosen.push_back(&test::slam_case(name));
   if (options.cases.empty()) {
