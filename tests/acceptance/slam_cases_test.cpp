@@ -22,8 +22,8 @@ void expect_short_drive_holds(const SlamCase& c, std::size_t number = 0) {
   expect_checks_hold(c, {record_and_score(c, c.quick.at(number))});
 }
 
-TEST(SlamShortDrive, MapsAnOffice) {  // Within 8 m much ground is seen once and from afar: the
-                                      // whole of it is asked at full length.
+TEST(SlamShortDrive, MapsAnOffice) {
+  // Within 8 m much ground is seen once and from afar: free space is asked for at full length.
   expect_short_drive_holds(without(slam_case("office_loop"), {&SlamScore::free_iou_in_view}));
 }
 
