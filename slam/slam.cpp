@@ -41,6 +41,7 @@ constexpr int kSearchWhenLostEvery = 2;
 constexpr int kFewInliers = 120;  // fewer leave the heading to noise: walls are asked too
 constexpr int kMinWallPoints = 30;
 constexpr double kMinWallShare = 0.7;   // of the points that must lie on the walls
+constexpr double kWallStep = 1.0;       // a step beyond this is no correction
 constexpr int kWallKeyframes = 5;       // whose walls are looked at together
 constexpr double kBlindSpacing = 1.25;  // of keyframes in places that show nothing
 constexpr double kFoundSigmaM = 0.05;   // of a pose found by recognising the place
@@ -50,6 +51,13 @@ constexpr int kFinalIterations = 8;
 
 bool is_convincing(const WallMatch& match) {
   return match.points >= kMinWallPoints && match.inlier_share >= kMinWallShare;
+}
+
+/// How far a match leads away from the prior, in units of 5 cm and 30 mrad.
+double step_of(const WallMatch& match, const TPose2D& prior) {
+  const TPose2D& at = match.look.map_from_base;
+  return std::hypot(at.x - prior.x, at.y - prior.y) / 0.05 +
+         std::abs(maps::wrap_angle(at.phi - prior.phi)) / 0.03;
 }
 
 /// What walls alone say: the match was held by the prior where they are silent.
@@ -200,7 +208,12 @@ void Slam::Impl::move_to(double time_s, const Se3& seen, const Se3& believed, in
 
 /// The landmarks that should be in view against the depth image; features need not be asked.
 ViewVerdict Slam::Impl::verdict_on(const CameraFrame& frame, const Se3& pose) const {
-  const DepthAgreement view = depth_agreement(map, local.landmarks, frame, pose, motion.planar());
+  // What one keyframe alone has seen may have walked away since.
+  std::vector<int> lasting;
+  for (const int l : local.landmarks) {
+    if (map.landmark(l).sightings.size() >= 2) lasting.push_back(l);
+  }
+  const DepthAgreement view = depth_agreement(map, lasting, frame, pose, motion.planar());
   if (view.judged() + view.hidden < kTellingLandmarks) return ViewVerdict::kSilent;
   if (view.hidden > view.judged()) return ViewVerdict::kHidden;
   return view.share() < kAgreeingShare ? ViewVerdict::kContradicts : ViewVerdict::kAgrees;
@@ -236,7 +249,9 @@ Se3 Slam::Impl::follow_walls(const CameraFrame& frame, const Se3& pose) {
   walls = wall_scan(frame, camera, base_from_camera, config);
   const WallMatch match = match_walls(placed_walls(last_keyframes()), walls, to_planar(pose),
                                       motion.dead_reckoning().pose_covariance());
-  return is_convincing(match) ? motion.correct(match.look) : pose;
+  // A person's flank is no wall: it asks for a step that wheels and gyro do not believe.
+  const bool plausible = is_convincing(match) && step_of(match, to_planar(pose)) < kWallStep;
+  return plausible ? motion.correct(match.look) : pose;
 }
 
 /// The keyframe at hand and those before it that may show the same walls.
@@ -260,7 +275,7 @@ void Slam::Impl::link_walls(int keyframe, const std::vector<int>& earlier) {
   for (const int k : earlier) {
     const WallMatch match = match_walls(placed_walls({k}), now.walls, to_planar(now.map_from_base),
                                         motion.dead_reckoning().pose_covariance());
-    if (!is_convincing(match)) continue;
+    if (!is_convincing(match) || step_of(match, to_planar(now.map_from_base)) > kWallStep) continue;
     MotionLink link = link_of(match, to_planar(map.keyframe(k).map_from_base));
     link.from = k;
     link.to = keyframe;
@@ -397,13 +412,6 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
     pose = follow_walls(frame, pose);
   }
   const bool first = map.keyframes().empty();
-  fprintf(stderr,
-          "t %.1f feat %zu local %zu matches %zu inl %d tracked %d state %d sig %.3f pose %.2f "
-          "%.2f %.2f kf %zu cal %.5f %.4f\n",
-          frame.time_s, features.size(), local.landmarks.size(), result.matches.size(),
-          result.solution.inliers, tracked, (int)health.state(), prediction.sigma_position_m,
-          pose.translation.x(), pose.translation.y(), to_planar(pose).phi, map.keyframes().size(),
-          motion.dead_reckoning().calibration()(0), motion.dead_reckoning().calibration()(1));
   judge(frame, tracked, pose);
   if (!frame.gray.empty() && frame_joins_map(result, features, pose)) {
     insert_keyframe(frame, std::move(features), result, pose);
