@@ -36,6 +36,9 @@ constexpr double kSureScanShare = 0.75, kSureDepthShare = 0.8, kSureMatched = 0.
 constexpr double kMostRival = 0.2,
                  kMostRivalTracking = 0.35;  // share of the votes that another place may have
 constexpr double kStillScanShare = 0.6, kStillMatched = 0.15;
+// Odometry says it cannot be elsewhere; only somebody who carried it can have brought it there.
+constexpr int kFramesAfterLoss = 22;
+constexpr double kDoubtfulShare = 0.3;  // of the confidence that is left while a frame contradicts
 constexpr double kSureRecognitions = 1.2;  // of the whole map: two clear views or more
 constexpr double kFullWeightInliers = 40.0;
 // A view this near a mapped one has to match it; elsewhere the map knows nothing to contradict.
@@ -113,9 +116,10 @@ struct Localizer::Impl {
   PlaceVotes votes;
   LocalizerEvidence evidence;
   int frames = 0;
-  int misses = 0;         ///< frames in a row that matched nothing
-  bool was_sure = false;  ///< of this place, before the camera was blind
-  bool doubt = false;     ///< the newest frame shows plenty and does not fit
+  int misses = 0;           ///< frames in a row that matched nothing
+  bool moved_away = false;  ///< a place was sure and then lost: the next one is an odd one
+  bool was_sure = false;    ///< of this place, before the camera was blind
+  bool doubt = false;       ///< the newest frame shows plenty and does not fit
   std::optional<double> contradicted_since_s;
   double last_fix_s = -1e9;
   double last_frame_s = -1e9;
@@ -133,6 +137,7 @@ void Localizer::Impl::begin(double time_s) {
 
 void Localizer::Impl::lose() {
   state = State::kSearching;
+  if (was_sure) moved_away = true;
   was_sure = false;
   evidence = {};
   misses = 0;
@@ -306,6 +311,7 @@ bool Localizer::Impl::is_convincing() const {
     return evidence.scan_share >= kStillScanShare && evidence.matched_share >= kStillMatched &&
            evidence.rival_share <= kMostRivalTracking;
   }
+  if (moved_away && evidence.agreeing_frames < kFramesAfterLoss) return false;
   return evidence.scan_share >= kSureScanShare && evidence.depth_share >= kSureDepthShare &&
          evidence.matched_share >= kSureMatched && evidence.inliers >= kSureTelling &&
          evidence.recognitions >= kSureRecognitions && evidence.rival_share <= kMostRival &&
@@ -341,6 +347,7 @@ void Localizer::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan) {
   if (state == State::kConfirming && is_convincing()) {
     state = State::kTracking;
     was_sure = true;
+    moved_away = false;
     prior.reset();  // it has done its work; from here on the map decides
   }
 }
@@ -357,7 +364,7 @@ PoseEstimate Localizer::Impl::estimate(double time_s) {
   evidence.sigma_position_m = now.sigma_position_m;
   evidence.sigma_heading_rad = now.sigma_heading_rad;
   evidence.unseen_s = time_s - last_fix_s;
-  e.confidence = confidence_of(evidence);
+  e.confidence = (doubt ? kDoubtfulShare : 1.0) * confidence_of(evidence);
   const bool fresh =
       !doubt && !camera_is_silent(time_s) && evidence.unseen_s <= config.localizer.degraded_after_s;
   const bool sure = state == State::kTracking && evidence.rival_share <= kMostRivalTracking &&
