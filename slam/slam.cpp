@@ -15,6 +15,7 @@
 #include "slam/keyframe_codec.h"
 #include "slam/landmark_map.h"
 #include "slam/local_map.h"
+#include "slam/localizer_depth_check.h"
 #include "slam/loop_closer.h"
 #include "slam/map_storage.h"
 #include "slam/motion_model.h"
@@ -32,12 +33,15 @@ namespace {
 // from one at any frame rate the wheels outpace.
 constexpr double kDeadReckonedEveryS = 0.02;
 constexpr int kMinFirstFeatures = 50;      // with depth, to start a map on
-constexpr int kPlenty = 150;               // features; fewer may be a hand or a dark room
+constexpr int kTellingLandmarks = 40;      // that should be in view: fewer prove nothing
+constexpr double kAgreeingShare = 0.5;     // of them that must be at their depth
+constexpr double kWorthlessSigmaM = 0.5;   // dead reckoning beyond it holds nobody back from a jump
 constexpr int kSearchEverywhereEvery = 5;  // frames without a match
 constexpr int kSearchWhenLostEvery = 2;
 constexpr int kFewInliers = 120;  // fewer leave the heading to noise: walls are asked too
 constexpr int kMinWallPoints = 30;
 constexpr double kMinWallShare = 0.7;   // of the points that must lie on the walls
+constexpr double kWallStep = 1.0;       // a step beyond this is no correction
 constexpr int kWallKeyframes = 5;       // whose walls are looked at together
 constexpr double kBlindSpacing = 1.25;  // of keyframes in places that show nothing
 constexpr double kFoundSigmaM = 0.05;   // of a pose found by recognising the place
@@ -47,6 +51,13 @@ constexpr int kFinalIterations = 8;
 
 bool is_convincing(const WallMatch& match) {
   return match.points >= kMinWallPoints && match.inlier_share >= kMinWallShare;
+}
+
+/// How far a match leads away from the prior, in units of 5 cm and 30 mrad.
+double step_of(const WallMatch& match, const TPose2D& prior) {
+  const TPose2D& at = match.look.map_from_base;
+  return std::hypot(at.x - prior.x, at.y - prior.y) / 0.05 +
+         std::abs(maps::wrap_angle(at.phi - prior.phi)) / 0.03;
 }
 
 /// What walls alone say: the match was held by the prior where they are silent.
@@ -88,7 +99,8 @@ struct Slam::Impl {
   TrackResult track(double time_s, const FeatureSet& features, const MotionPrediction& prediction);
   void recover(double time_s, const FeatureSet& features, TrackResult& result);
   void move_to(double time_s, const Se3& seen, const Se3& believed, int keyframe);
-  void judge(double time_s, const FeatureSet& features, bool tracked, const Se3& pose);
+  ViewVerdict verdict_on(const CameraFrame& frame, const Se3& pose) const;
+  void judge(const CameraFrame& frame, bool tracked, const Se3& pose);
   void remember_tracked(const TrackResult& result);
   bool frame_joins_map(const TrackResult& result, const FeatureSet& features,
                        const Se3& pose) const;
@@ -172,16 +184,17 @@ void Slam::Impl::recover(double time_s, const FeatureSet& features, TrackResult&
     keyframe = place.keyframe;
   }
   if (!found.accepted) return;
-  result.status = TrackStatus::kTracked;
-  result.solution = found.solution;
-  result.matches = found.matches;
-  // Far from what was believed, the prediction was worth nothing: carried, or lost for long.
   const MotionPrediction believed = motion.predict(time_s);
   const Se3& seen = found.solution.map_from_base;
   const double apart = (believed.prior.map_from_base.translation - seen.translation).norm();
   if (apart > kSurprisingM + 4.0 * believed.sigma_position_m) {
+    // A look-alike, unless something has shown that the prediction is worth nothing.
+    if (!lost && believed.sigma_position_m < kWorthlessSigmaM) return;
     move_to(time_s, seen, believed.prior.map_from_base, keyframe);
   }
+  result.status = TrackStatus::kTracked;
+  result.solution = found.solution;
+  result.matches = found.matches;
 }
 
 void Slam::Impl::move_to(double time_s, const Se3& seen, const Se3& believed, int keyframe) {
@@ -193,13 +206,24 @@ void Slam::Impl::move_to(double time_s, const Se3& seen, const Se3& believed, in
   health.found_elsewhere();
 }
 
+/// The landmarks that should be in view against the depth image; features need not be asked.
+ViewVerdict Slam::Impl::verdict_on(const CameraFrame& frame, const Se3& pose) const {
+  // What one keyframe alone has seen may have walked away since.
+  std::vector<int> lasting;
+  for (const int l : local.landmarks) {
+    if (map.landmark(l).sightings.size() >= 2) lasting.push_back(l);
+  }
+  const DepthAgreement view = depth_agreement(map, lasting, frame, pose, motion.planar());
+  if (view.judged() + view.hidden < kTellingLandmarks) return ViewVerdict::kSilent;
+  if (view.hidden > view.judged()) return ViewVerdict::kHidden;
+  return view.share() < kAgreeingShare ? ViewVerdict::kContradicts : ViewVerdict::kAgrees;
+}
+
 /// What this frame says about the pose believed; a jump that is confirmed mends the poses before.
-void Slam::Impl::judge(double time_s, const FeatureSet& features, bool tracked, const Se3& pose) {
-  const bool plenty = static_cast<int>(features.size()) >= kPlenty;
-  health.update({.time_s = time_s,
+void Slam::Impl::judge(const CameraFrame& frame, bool tracked, const Se3& pose) {
+  health.update({.time_s = frame.time_s,
                  .tracked = tracked,
-                 .plenty = plenty,
-                 .view_is_mapped = !tracked && plenty && view_is_mapped(map, local, pose),
+                 .verdict = tracked ? ViewVerdict::kAgrees : verdict_on(frame, pose),
                  .carried = motion.carried()});
   if (!jump || health.state() == TrackingState::kConfirming) return;
   if (health.state() == TrackingState::kTracking) {
@@ -225,7 +249,9 @@ Se3 Slam::Impl::follow_walls(const CameraFrame& frame, const Se3& pose) {
   walls = wall_scan(frame, camera, base_from_camera, config);
   const WallMatch match = match_walls(placed_walls(last_keyframes()), walls, to_planar(pose),
                                       motion.dead_reckoning().pose_covariance());
-  return is_convincing(match) ? motion.correct(match.look) : pose;
+  // A person's flank is no wall: it asks for a step that wheels and gyro do not believe.
+  const bool plausible = is_convincing(match) && step_of(match, to_planar(pose)) < kWallStep;
+  return plausible ? motion.correct(match.look) : pose;
 }
 
 /// The keyframe at hand and those before it that may show the same walls.
@@ -249,7 +275,7 @@ void Slam::Impl::link_walls(int keyframe, const std::vector<int>& earlier) {
   for (const int k : earlier) {
     const WallMatch match = match_walls(placed_walls({k}), now.walls, to_planar(now.map_from_base),
                                         motion.dead_reckoning().pose_covariance());
-    if (!is_convincing(match)) continue;
+    if (!is_convincing(match) || step_of(match, to_planar(now.map_from_base)) > kWallStep) continue;
     MotionLink link = link_of(match, to_planar(map.keyframe(k).map_from_base));
     link.from = k;
     link.to = keyframe;
@@ -373,7 +399,10 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
   const bool tracked = result.status == TrackStatus::kTracked;
   Se3 pose = prediction.prior.map_from_base;
   if (tracked) {
+    const Se3 predicted = motion.predict(frame.time_s).prior.map_from_base;
     pose = motion.correct(frame.time_s, result.solution);
+    // The first look at a place recognised is rough; those that confirm it sharpen the jump.
+    if (jump) jump->new_map_from_old_map = pose * predicted.inverse() * jump->new_map_from_old_map;
     anchor = local.reference_keyframe;
     remember_tracked(result);
     if (result.solution.inliers < kFewInliers) pose = follow_walls(frame, pose);
@@ -383,14 +412,7 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
     pose = follow_walls(frame, pose);
   }
   const bool first = map.keyframes().empty();
-  fprintf(stderr,
-          "t %.1f feat %zu local %zu matches %zu inl %d tracked %d state %d sig %.3f pose %.2f "
-          "%.2f %.2f kf %zu cal %.5f %.4f\n",
-          frame.time_s, features.size(), local.landmarks.size(), result.matches.size(),
-          result.solution.inliers, tracked, (int)health.state(), prediction.sigma_position_m,
-          pose.translation.x(), pose.translation.y(), to_planar(pose).phi, map.keyframes().size(),
-          motion.dead_reckoning().calibration()(0), motion.dead_reckoning().calibration()(1));
-  judge(frame.time_s, features, tracked, pose);
+  judge(frame, tracked, pose);
   if (!frame.gray.empty() && frame_joins_map(result, features, pose)) {
     insert_keyframe(frame, std::move(features), result, pose);
     pose = map.keyframe(anchor).map_from_base;  // a loop may have moved it
