@@ -189,7 +189,7 @@ void Slam::Impl::recover(double time_s, const FeatureSet& features, TrackResult&
   const double apart = (believed.prior.map_from_base.translation - seen.translation).norm();
   if (apart > kSurprisingM + 4.0 * believed.sigma_position_m) {
     // A look-alike, unless something has shown that the prediction is worth nothing.
-    if (!lost && believed.sigma_position_m < kWorthlessSigmaM) return;
+    if (motion.planar() && !lost && believed.sigma_position_m < kWorthlessSigmaM) return;
     move_to(time_s, seen, believed.prior.map_from_base, keyframe);
   }
   result.status = TrackStatus::kTracked;
