@@ -48,6 +48,10 @@ constexpr double kFoundSigmaM = 0.05;   // of a pose found by recognising the pl
 constexpr double kFoundSigmaRad = 0.03;
 constexpr double kSurprisingM = 0.15;
 constexpr int kFinalIterations = 8;
+// What one step from keyframe to keyframe adds to the uncertainty, at rest and by its length.
+constexpr double kHopM = 0.002, kHopShare = 0.004;
+constexpr double kHopRad = 0.001, kHopRadShare = 0.002;
+constexpr double kFrameIsLateS = 0.3;  // without one, nothing can be called tracked
 
 bool is_convincing(const WallMatch& match) {
   return match.points >= kMinWallPoints && match.inlier_share >= kMinWallShare;
@@ -104,6 +108,7 @@ struct Slam::Impl {
   void remember_tracked(const TrackResult& result);
   bool frame_joins_map(const TrackResult& result, const FeatureSet& features,
                        const Se3& pose) const;
+  void spread_uncertainty(const Keyframe& parent, Keyframe& child, TrackStatus status);
   void insert_keyframe(const CameraFrame& frame, FeatureSet features, const TrackResult& result,
                        const Se3& pose);
   std::vector<MotionLink> links() const;
@@ -127,6 +132,7 @@ struct Slam::Impl {
   std::vector<int> tracked_landmarks;
   SlamSummary counters;
   bool begun = false;
+  double last_frame_s = 0.0;
   int anchor = -1;  ///< keyframe that poses are held against: last seen, or made
   int misses = 0;   ///< frames in a row that matched nothing
 
@@ -305,6 +311,18 @@ bool Slam::Impl::frame_joins_map(const TrackResult& result, const FeatureSet& fe
   return spacing > kBlindSpacing;
 }
 
+/// A keyframe is known against the map's first one as well as its parent, and a little worse.
+void Slam::Impl::spread_uncertainty(const Keyframe& parent, Keyframe& child, TrackStatus status) {
+  const Se3 step = parent.map_from_base.inverse() * child.map_from_base;
+  const double distance = step.translation.norm(), turn = so3_log(step.rotation).norm();
+  const MotionPrediction now = motion.predict(child.time_s);
+  const bool blind = status != TrackStatus::kTracked;
+  const double hop_m = kHopM + kHopShare * distance + (blind ? now.sigma_position_m : 0.0);
+  const double hop_rad = kHopRad + kHopRadShare * turn + (blind ? now.sigma_heading_rad : 0.0);
+  child.sigma_m = std::hypot(parent.sigma_m, hop_m, parent.sigma_rad * distance);
+  child.sigma_rad = std::hypot(parent.sigma_rad, hop_rad);
+}
+
 void Slam::Impl::insert_keyframe(const CameraFrame& frame, FeatureSet features,
                                  const TrackResult& result, const Se3& pose) {
   Keyframe k;
@@ -321,6 +339,7 @@ void Slam::Impl::insert_keyframe(const CameraFrame& frame, FeatureSet features,
   if (motion.planar()) {
     k.walls = blind ? walls : wall_scan(frame, camera, base_from_camera, config);
   }
+  if (anchor >= 0) spread_uncertainty(map.keyframe(anchor), k, result.status);
   const std::vector<int> earlier = last_keyframes();
   const int id = map.add_keyframe(std::move(k));
   motion.mark_keyframe(id, frame.time_s);
@@ -350,6 +369,12 @@ void Slam::Impl::look_for_loop(double time_s) {
   const Se3 before = map.keyframe(newest).map_from_base;
   if (!close_loop(map, edges, links(), *loop)) return;
   ++counters.loop_closures;
+  const Keyframe& seen_before = map.keyframe(loop->edge.from);
+  Keyframe& now_known = map.keyframe(newest);
+  now_known.sigma_m =
+      std::min(now_known.sigma_m, std::hypot(seen_before.sigma_m, kFoundSigmaM / 5));
+  now_known.sigma_rad =
+      std::min(now_known.sigma_rad, std::hypot(seen_before.sigma_rad, kFoundSigmaRad / 5));
   motion.shift(map.keyframe(newest).map_from_base * before.inverse());
 }
 
@@ -369,11 +394,17 @@ PoseEstimate Slam::Impl::estimate(double time_s, const Se3& pose) {
   e.map_from_base = to_mrpt(pose);
   e.sigma_position_m = now.sigma_position_m;
   e.sigma_heading_rad = now.sigma_heading_rad;
+  if (anchor >= 0) {
+    // The filter knows the pose against the keyframe in view; that one is not known exactly either.
+    e.sigma_position_m = std::hypot(e.sigma_position_m, map.keyframe(anchor).sigma_m);
+    e.sigma_heading_rad = std::hypot(e.sigma_heading_rad, map.keyframe(anchor).sigma_rad);
+  }
+  const bool frames_come = time_s - last_frame_s < kFrameIsLateS;
   const bool bounded = now.sigma_position_m < config.localizer.lost_sigma_m;
   switch (health.state()) {
     case TrackingState::kTracking:
-      e.health = Health::kOk;
-      e.confidence = 0.95;
+      e.health = frames_come ? Health::kOk : bounded ? Health::kDegraded : Health::kLost;
+      e.confidence = frames_come ? 0.95 : bounded ? 0.6 : 0.0;
       break;
     case TrackingState::kReckoning:
     case TrackingState::kConfirming:
@@ -389,6 +420,7 @@ PoseEstimate Slam::Impl::estimate(double time_s, const Se3& pose) {
 
 PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan) {
   const CameraFrame frame = camera_frame_from(scan, camera);
+  last_frame_s = frame.time_s;
   const MotionPrediction prediction = motion.predict(frame.time_s);
   FeatureSet features;
   if (!frame.gray.empty())
@@ -442,7 +474,9 @@ std::optional<PoseEstimate> Slam::process(const mrpt::obs::CObservation& observa
     s.motion.add(*wheels);
   }
   s.dead_reckon(time_s);
-  return std::nullopt;
+  const bool late = s.last_frame_s > 0.0 && time_s - s.last_frame_s >= kFrameIsLateS;
+  if (!late || !s.motion.planar()) return std::nullopt;
+  return s.estimate(time_s, s.motion.predict(time_s).prior.map_from_base);
 }
 
 maps::SavedMap Slam::finish() {

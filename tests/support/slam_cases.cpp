@@ -73,7 +73,7 @@ std::vector<SlamCase> make_cases() {
                    in_three_worlds("office_loop", "loop:30", "light_steps", 1),
                    rover_checks({at_most(&S::ate_m, 0.020), at_most(&S::steady_ratio, 1.3)})});
   cases.push_back({"blackouts",
-                   {{"random:7", "loop:8:7", kQuick + "blackout_covered.yaml", 7},
+                   {{"lab", "lab_short", kQuick + "blackout_covered.yaml", 7},
                     {"lab", "lab_short", kQuick + "blackout_missing.yaml", 5}},
                    in_three_worlds("office_loop", "loop:30", "blackouts", 11),
                    rover_checks({at_most(&S::ate_m, 0.030), at_most(&S::not_ok_after_s, 0.5, 0.5),
