@@ -382,8 +382,7 @@ void Slam::Impl::look_for_loop(double time_s) {
 void Slam::Impl::adjust_everything() {
   constexpr int kPasses = 2;  // the second without the sightings the first found wanting
   for (int pass = 0; pass < kPasses; ++pass) {
-    adjust_bundle(map, {}, motion.links(),
-                  {.iterations = kFinalIterations, .on_floor = motion.planar()});
+    adjust_bundle(map, {}, links(), {.iterations = kFinalIterations, .on_floor = motion.planar()});
   }
 }
 
