@@ -167,7 +167,7 @@ void RayVoter::vote(const DepthScan& scan, const TPose2D& patch_from_level, Evid
     const CellRay ray = cell_ray(scan, scan.rays[i]);
     if (i < static_cast<std::size_t>(scan.fine_from)) follow(ray, 0.0f, crowded, kCrowd);
     follow(ray, crowded, reach, 1);
-    count_hit(ray);
+    if (!scan.rays[i].moving) count_hit(ray);
   }
   cast_votes(patch);
 }
