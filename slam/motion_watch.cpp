@@ -11,7 +11,11 @@ namespace {
 constexpr int kBlocksAcross = 160;  // of the reduced images
 constexpr int kReach = 1;           // blocks around: poses and edges are only so exact
 constexpr int kLeastBlocks = 5;     // with returns, of the nine
-constexpr double kEveryS = 0.3;     // between images kept
+constexpr std::uint16_t kEmpty = std::numeric_limits<std::uint16_t>::max();  // none at all
+// Of the camera's range: farther, that nothing returns says nothing.
+constexpr float kShareOfRange = 0.83f;
+constexpr double kLeastReturned = 0.2;  // of the blocks of an image
+constexpr double kEveryS = 0.3;         // between images kept
 constexpr double kLeastApartS = 0.2;
 // What moves is told from noise and from errors of the pose by a margin in depth.
 constexpr float kMarginM = 0.10f;
@@ -23,7 +27,7 @@ constexpr float kFarthestM = 7.0f;
 constexpr std::size_t kEveryRay = 2;   // is asked: bodies are larger
 constexpr int kMovingRays = 4;         // around a cell; a few are flying pixels
 constexpr float kMovingShare = 0.25f;  // of the rays that end around it
-constexpr float kBodyRadiusM = 0.35f;
+constexpr float kBodyRadiusM = 0.45f;
 
 /// Counts over the floor around the camera.
 class FloorCells {
@@ -59,12 +63,13 @@ Eigen::Vector3f end_of(const ScanRay& ray, const Eigen::Vector3f& camera) {
 
 /// The cells where enough moves, grown by a body's radius.
 FloorCells moving_ground(const FloorCells& moving, const FloorCells& all) {
-  constexpr int kGrow = static_cast<int>(kBodyRadiusM / kCellM);
+  constexpr int kGrow = static_cast<int>(kBodyRadiusM / kCellM + 0.01f);
   FloorCells out;
   for (int y = 0; y < FloorCells::kSide; ++y) {
     for (int x = 0; x < FloorCells::kSide; ++x) {
       const int n = moving.around(x, y);
-      if (n < kMovingRays || static_cast<float>(n) < kMovingShare * static_cast<float>(all.around(x, y))) {
+      if (n < kMovingRays ||
+          static_cast<float>(n) < kMovingShare * static_cast<float>(all.around(x, y))) {
         continue;
       }
       for (int dy = -kGrow; dy <= kGrow; ++dy) {
@@ -86,14 +91,12 @@ MotionWatch::MotionWatch(const CameraModel& camera, const DepthConfig& depth)
     : camera_(camera), depth_(depth) {}
 
 void MotionWatch::remember(const cv::Mat& depth, double unit_m, const AnchoredView& view) {
-  while (!remembered_.empty() &&
-         remembered_.front().view.time_s < view.time_s - 2.0 * kHorizonS) {
+  while (!remembered_.empty() && remembered_.front().view.time_s < view.time_s - 2.0 * kHorizonS) {
     remembered_.pop_front();
   }
   if (!remembered_.empty() && view.time_s - remembered_.back().view.time_s < kEveryS) return;
-  constexpr std::uint16_t kNone = std::numeric_limits<std::uint16_t>::max();
   const int block = std::max(1, depth.cols / kBlocksAcross);
-  cv::Mat least(depth.rows / block, depth.cols / block, CV_16UC1, cv::Scalar(kNone));
+  cv::Mat least(depth.rows / block, depth.cols / block, CV_16UC1, cv::Scalar(kEmpty));
   for (int v = 0; v < least.rows * block; ++v) {
     const auto* from = depth.ptr<std::uint16_t>(v);
     auto* to = least.ptr<std::uint16_t>(v / block);
@@ -105,22 +108,25 @@ void MotionWatch::remember(const cv::Mat& depth, double unit_m, const AnchoredVi
       }
     }
   }
+  const int with_returns = cv::countNonZero(least != kEmpty);
+  if (with_returns < kLeastReturned * static_cast<double>(least.total())) return;  // covered
   Remembered out{view, cv::Mat::zeros(least.size(), CV_16UC1)};
   const double to_mm = 1e3 * unit_m;
   for (int v = kReach; v < least.rows - kReach; ++v) {
     for (int u = kReach; u < least.cols - kReach; ++u) {
-      std::uint16_t nearest = kNone;
+      std::uint16_t nearest = kEmpty;
       int returns = 0;
       for (int dv = -kReach; dv <= kReach; ++dv) {
         const auto* row = least.ptr<std::uint16_t>(v + dv);
         for (int du = -kReach; du <= kReach; ++du) {
           nearest = std::min(nearest, row[u + du]);
-          returns += row[u + du] != kNone ? 1 : 0;
+          returns += row[u + du] != kEmpty ? 1 : 0;
         }
       }
+      auto& cell = out.nearest_mm.at<std::uint16_t>(v, u);
+      if (returns == 0) cell = kEmpty;
       if (returns < kLeastBlocks) continue;
-      out.nearest_mm.at<std::uint16_t>(v, u) =
-          static_cast<std::uint16_t>(std::min(65535.0, to_mm * (nearest + 1.0)));
+      cell = static_cast<std::uint16_t>(std::min(kEmpty - 1.0, to_mm * (nearest + 1.0)));
     }
   }
   remembered_.push_back(std::move(out));
@@ -145,19 +151,40 @@ std::vector<MotionWatch::Eye> MotionWatch::eyes_for(const AnchoredView& view,
   return out;
 }
 
-bool MotionWatch::is_seen_through(const Eye& eye, const Eigen::Vector3f& point) const {
+MotionWatch::Verdict MotionWatch::look_at(const Eye& eye, const Eigen::Vector3f& point) const {
   const Eigen::Vector3f p = eye.rotation * point + eye.translation;
-  if (p.z() < static_cast<float>(depth_.min_depth_m)) return false;
+  if (p.z() < static_cast<float>(depth_.min_depth_m)) return Verdict::kSilent;
   const Eigen::Vector2d raw = camera_.distort(camera_.project(p.cast<double>()));
   if (!(raw.x() >= 0.0 && raw.y() >= 0.0 && raw.x() < camera_.width() &&
         raw.y() < camera_.height())) {
-    return false;
+    return Verdict::kSilent;
   }
   const int u = static_cast<int>(raw.x() * eye.nearest_mm->cols / camera_.width());
   const int v = static_cast<int>(raw.y() * eye.nearest_mm->rows / camera_.height());
-  const float behind = 0.001f * static_cast<float>(eye.nearest_mm->at<std::uint16_t>(v, u));
-  const float sigma = static_cast<float>(depth_.sigma_at_1m_m) * behind * behind;
-  return behind > p.z() + kMarginM + kSigmas * sigma;
+  const std::uint16_t nearest_mm = eye.nearest_mm->at<std::uint16_t>(v, u);
+  if (nearest_mm == 0) return Verdict::kSilent;
+  if (nearest_mm == kEmpty) {
+    const bool in_range = p.z() < kShareOfRange * static_cast<float>(depth_.max_depth_m);
+    return in_range ? Verdict::kNothingThere : Verdict::kSilent;
+  }
+  const float nearest = 0.001f * static_cast<float>(nearest_mm);
+  const float margin =
+      kMarginM + kSigmas * static_cast<float>(depth_.sigma_at_1m_m) * nearest * nearest;
+  if (nearest > p.z() + margin) return Verdict::kSeenThrough;
+  return nearest < p.z() - margin ? Verdict::kSilent : Verdict::kThere;
+}
+
+/// Open ground beyond the range returns nothing; nor do some surfaces at some angles. That they
+/// have been seen from elsewhere tells these from who has left.
+bool MotionWatch::moves(const std::vector<Eye>& eyes, const Eigen::Vector3f& point) const {
+  bool there = false, nothing_there = false;
+  for (const Eye& eye : eyes) {
+    const Verdict said = look_at(eye, point);
+    if (said == Verdict::kSeenThrough) return true;
+    there = there || said == Verdict::kThere;
+    nothing_there = nothing_there || said == Verdict::kNothingThere;
+  }
+  return nothing_there && !there;
 }
 
 void MotionWatch::mark_moving(const AnchoredView& view, const LandmarkMap& map,
@@ -170,9 +197,7 @@ void MotionWatch::mark_moving(const AnchoredView& view, const LandmarkMap& map,
     const Eigen::Vector3f p = end_of(scan.rays[i], scan.camera);
     if (p.z() < kLowestM || p.z() > kHighestM || !FloorCells::contains(p.x(), p.y())) continue;
     ++all.at(p.x(), p.y());
-    const bool moves =
-        std::any_of(eyes.begin(), eyes.end(), [&](const Eye& e) { return is_seen_through(e, p); });
-    if (!moves) continue;
+    if (!moves(eyes, p)) continue;
     ++moving.at(p.x(), p.y());
     any = true;
   }
@@ -185,11 +210,7 @@ void MotionWatch::mark_moving(const AnchoredView& view, const LandmarkMap& map,
 }
 
 void MotionWatch::reanchor(int from, int to, const Se3& to_from_from) {
-  for (Remembered& r : remembered_) {
-    if (r.view.keyframe != from) continue;
-    r.view.keyframe = to;
-    r.view.keyframe_from_level = to_from_from * r.view.keyframe_from_level;
-  }
+  for (Remembered& r : remembered_) r.view.reanchor(from, to, to_from_from);
 }
 
 std::size_t MotionWatch::memory_bytes() const {

@@ -19,6 +19,12 @@ struct AnchoredView {
   int keyframe = -1;
   Se3 keyframe_from_level;  ///< level: as in DepthScan
   Se3 level_from_camera;    ///< optical frame
+
+  void reanchor(int from, int to, const Se3& to_from_from) {
+    if (keyframe != from) return;
+    keyframe = to;
+    keyframe_from_level = to_from_from * keyframe_from_level;
+  }
 };
 
 /// Keeps the depth images of the last seconds, reduced, and finds in a scan what moves (seen
@@ -44,8 +50,8 @@ class MotionWatch {
   std::size_t memory_bytes() const;
 
  private:
-  /// The least distance (mm) within each block of pixels and those around it; 0: not enough
-  /// returns. Whatever lies nearer than this was not there.
+  /// The least distance (mm) within each block of pixels and those around it: whatever lies nearer
+  /// was not there. 0: too few returns to tell; the largest number: none at all.
   struct Remembered {
     AnchoredView view;
     cv::Mat nearest_mm;
@@ -58,7 +64,10 @@ class MotionWatch {
   };
 
   std::vector<Eye> eyes_for(const AnchoredView& view, const LandmarkMap& map) const;
-  bool is_seen_through(const Eye& eye, const Eigen::Vector3f& point) const;
+  /// What another image says of a point.
+  enum class Verdict { kSilent, kThere, kSeenThrough, kNothingThere };
+  Verdict look_at(const Eye& eye, const Eigen::Vector3f& point) const;
+  bool moves(const std::vector<Eye>& eyes, const Eigen::Vector3f& point) const;
 
   CameraModel camera_;
   DepthConfig depth_;

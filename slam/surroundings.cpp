@@ -81,11 +81,11 @@ void Surroundings::follow_floor(const DepthScanner::Samples& samples, double dep
 void Surroundings::look(const CameraFrame& frame, const LandmarkMap& map, int keyframe,
                         const Se3& pose) {
   if (!on_floor_ || frame.depth.empty() || keyframe < 0) return;
-  AnchoredView view{frame.time_s, keyframe,
-                    from_planar(maps::compose(
-                        maps::inverse(to_planar(map.keyframe(keyframe).map_from_base)),
-                        to_planar(pose))),
-                    floor_.corrected(base_from_camera_)};
+  AnchoredView view{
+      frame.time_s, keyframe,
+      from_planar(maps::compose(maps::inverse(to_planar(map.keyframe(keyframe).map_from_base)),
+                                to_planar(pose))),
+      floor_.corrected(base_from_camera_)};
   watch_.remember(frame.depth, frame.depth_unit_m, view);
   const bool moved =
       last_keyframe_ < 0 || keyframe_spacing(last_pose_, pose, config_.tracking) >= kLookSpacing;
@@ -110,13 +110,31 @@ void Surroundings::cast_votes_until(double time_s, const LandmarkMap& map) {
   while (!pending_.empty() && pending_.front().view.time_s <= time_s) {
     PendingLook& look = pending_.front();
     EvidencePatch& evidence = patches_[look.patch].evidence;
-    DepthScan scan =
-        scanner_.scan(look.samples, look.depth_unit_m, look.view.level_from_camera);
+    DepthScan scan = scanner_.scan(look.samples, look.depth_unit_m, look.view.level_from_camera);
     watch_.mark_moving(look.view, map, scan);
     voter_.vote(scan, look.patch_from_level, evidence);
     voter_.vote_driven(maps::position_of(look.patch_from_level), kBodyRadiusM, evidence);
     pending_.pop_front();
   }
+}
+
+void Surroundings::hand_over(int from, int to, const LandmarkMap& map) {
+  const TPose2D to_from_from =
+      maps::compose(maps::inverse(to_planar(map.keyframe(to).map_from_base)),
+                    to_planar(map.keyframe(from).map_from_base));
+  for (AnchoredPatch& p : patches_) {
+    if (p.keyframe != from) continue;
+    p.keyframe = to;
+    p.keyframe_from_patch = maps::compose(to_from_from, p.keyframe_from_patch);
+  }
+  const auto known = patch_of_keyframe_.find(from);
+  if (known != patch_of_keyframe_.end()) {
+    patch_of_keyframe_.try_emplace(to, known->second);
+    patch_of_keyframe_.erase(known);
+  }
+  if (last_keyframe_ == from) last_keyframe_ = to;
+  for (PendingLook& look : pending_) look.view.reanchor(from, to, from_planar(to_from_from));
+  watch_.reanchor(from, to, from_planar(to_from_from));
 }
 
 /// For a camera that nobody knows the height of: evidence from the stored keyframes, one patch
