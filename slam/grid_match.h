@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "maps/occupancy_grid.h"
-#include "slam/dead_reckoning.h"
+#include "slam/planar_information.h"
 
 namespace rovigo::slam {
 
