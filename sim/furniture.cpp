@@ -54,10 +54,11 @@ void shelf(ModelBuilder& m, RandomStream& random) {
 }
 
 void low_table(ModelBuilder& m, RandomStream& random) {
-  const double height = random.uniform(0.32, 0.46);
+  // A camera at 0.25 m sees edge, legs and hardly the underside; the rover would not fit under.
+  const double height = random.uniform(0.35, 0.45);
   m.box("top", {0.55, 0.9, 0.04}, {0.0, 0.0, height - 0.02}, shade({0.6F, 0.42F, 0.26F}, random),
         rich_or_plain(Pattern::kWood, random));
-  m.legs(0.45, 0.8, height - 0.04, 0.05);
+  m.legs(0.47, 0.82, height - 0.04, 0.035);
 }
 
 void plant(ModelBuilder& m) {

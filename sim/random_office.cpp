@@ -24,6 +24,8 @@ struct Door {
   double width = 1.05;
 };
 
+enum class Standing { kAtWall, kFree };
+
 struct Room {
   std::string name;
   Bounds inside;             ///< between the walls' middles
@@ -56,6 +58,7 @@ class OfficeBuilder {
     row_of_rooms("south", 0.0, south, low_);
     row_of_rooms("north", high_, top_, high_);
     for (auto& room : rooms_) furnish(room);
+    require_low_table();
     world_.start = {1.0, 0.5 * (low_ + high_), 0.0};
     return std::move(world_);
   }
@@ -180,22 +183,35 @@ class OfficeBuilder {
     for (int i = 0; i < pieces; ++i) {
       const Furniture kind = kChoice[random_.bits() % std::size(kChoice)];
       for (int attempt = 0; attempt < kTriesPerPiece; ++attempt) {
-        if (place(room, kind, room.name + "_piece_" + std::to_string(i + 1))) break;
+        const Standing standing = stands_at_wall(kind) ? Standing::kAtWall : Standing::kFree;
+        if (place(room, kind, room.name + "_piece_" + std::to_string(i + 1), standing)) break;
       }
     }
     for (int i = 0; i < 3; ++i) hang_print(room, i + 1);
   }
 
+  /// Every office has at least one table that is too low to drive under.
+  void require_low_table() {
+    constexpr int kTries = 60;
+    for (int attempt = 0; attempt < kTries && !has_low_table_; ++attempt) {
+      for (auto& room : rooms_) {
+        const std::string name = room.name + "_low_table";
+        if (place(room, Furniture::kLowTable, name, Standing::kFree)) return;
+        if (attempt < kTries / 2) continue;  // no room in the middle: against a wall
+        if (place(room, Furniture::kLowTable, name, Standing::kAtWall)) return;
+      }
+    }
+  }
+
   /// Somewhere along a wall, its back to it, or free in the room; false where it does not fit.
-  bool place(Room& room, Furniture kind, const std::string& name) {
+  bool place(Room& room, Furniture kind, const std::string& name, Standing standing) {
     const Extent e = extent_of(kind);
     const Bounds& in = room.inside;
     const double half_wall = kWallM / 2 + 0.01;
     TPose2D pose;
     double dx = e.length_m / 2;
     double dy = e.width_m / 2;
-    const bool at_wall = stands_at_wall(kind);
-    if (at_wall) {
+    if (standing == Standing::kAtWall) {
       const auto wall = random_.bits() % 4;  // which one its back is at: west, south, east, north
       pose.phi = static_cast<double>(wall) * maps::kPi / 2;
       if (wall % 2 == 1) std::swap(dx, dy);
@@ -224,6 +240,7 @@ class OfficeBuilder {
     }
     room.used.push_back(taken);
     add_furniture(world_, kind, name, pose, random_);
+    has_low_table_ |= kind == Furniture::kLowTable;
     return true;
   }
 
@@ -252,6 +269,7 @@ class OfficeBuilder {
   RandomStream random_;
   WorldModel world_;
   std::vector<Room> rooms_;
+  bool has_low_table_ = false;
   double length_ = 0.0;
   double low_ = 0.0;
   double high_ = 0.0;

@@ -88,4 +88,15 @@ std::vector<AppearanceScore> AppearanceIndex::query(const std::vector<Descriptor
   return out;
 }
 
+std::vector<int> AppearanceIndex::similar(const Descriptor& descriptor, int max_bits) const {
+  std::vector<int> out;
+  for (int t = 0; t < kTables; ++t) {
+    for (const Entry& e : tables_[static_cast<std::size_t>(t)][key(descriptor, t)]) {
+      const Descriptor& d = descriptors_[static_cast<std::size_t>(e.descriptor)];
+      if (hamming_distance(descriptor, d) <= max_bits) out.push_back(e.descriptor);
+    }
+  }
+  return out;
+}
+
 }  // namespace rovigo::slam

@@ -25,6 +25,10 @@ class AppearanceIndex {
   std::vector<AppearanceScore> query(const std::vector<Descriptor>& descriptors,
                                      std::size_t most) const;
 
+  /// Stored descriptors within `max_bits`, by their number in the order they were added. Hashing
+  /// misses some, the more the farther they are.
+  std::vector<int> similar(const Descriptor& descriptor, int max_bits) const;
+
  private:
   static constexpr int kTables = 6;
   static constexpr int kKeyBits = 14;

@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "maps/settings.h"
+#include "slam/depth_filter_config.h"
 
 namespace rovigo::slam {
 
@@ -44,17 +44,6 @@ class TemporalDepthFilter {
   TemporalDepthFilterConfig config_;
   cv::Mat mean_;    ///< CV_32F
   cv::Mat missed_;  ///< CV_8U, frames in a row without a return
-};
-
-/// Which of them run before a depth image is used for the grid. The defaults are what measurably
-/// helps there.
-struct DepthFilterConfig {
-  int depth_decimation = 1;
-  bool depth_spatial_filter = false;
-  bool depth_temporal_filter = false;
-  int depth_hole_filling_px = 0;
-
-  void describe(maps::SettingsVisitor& v);
 };
 
 /// The chain, in that order. The camera's motion between frames is an argument because smoothing

@@ -15,8 +15,11 @@ constexpr double kFarthestM = 3.0;      // beyond it too few rays reach the floo
 constexpr double kPointFloorM = 0.003;  // no return's height is trusted better
 constexpr double kBiweight = 4.685;     // Tukey's constant
 constexpr int kIterations = 4;
-constexpr double kTogether = 25.0;  // neighbouring returns err together: so many count as one
+constexpr double kTogether = 6.0;  // neighbouring returns err together: so many count as one
 constexpr double kMostTiltRad = 0.08, kMostHeightM = 0.08;  // off by more, it is not this mount
+// The feet of walls are no floor: they stand in a narrow range and spread in height.
+constexpr double kLeastRangeSpreadM = 0.1;
+constexpr double kLeastFlatShare = 0.5;  // of the returns that might be floor, on the plane
 constexpr double kWorthAnotherScanM = 0.002, kWorthAnotherScanRad = 0.002;
 
 struct FloorPoint {
@@ -27,7 +30,7 @@ struct FloorPoint {
 /// Returns within what prior and noise allow for the floor.
 std::vector<FloorPoint> floor_points(const DepthScan& scan, const Eigen::Matrix3d& covariance) {
   std::vector<FloorPoint> out;
-  for (std::size_t i = 0; i < scan.rays.size(); ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(scan.fine_from); ++i) {  // plenty
     const ScanRay& r = scan.rays[i];
     if (r.slope > -0.05f || r.range_m > kFarthestM) continue;
     FloorPoint p;
@@ -39,6 +42,24 @@ std::vector<FloorPoint> floor_points(const DepthScan& scan, const Eigen::Matrix3
     if (std::abs(p.z) < gate) out.push_back(p);
   }
   return out;
+}
+
+double range_spread(const std::vector<FloorPoint>& points) {
+  double sum = 0.0, squares = 0.0;
+  for (const FloorPoint& p : points) {
+    const double range = p.row.tail<2>().norm();
+    sum += range;
+    squares += range * range;
+  }
+  const auto n = static_cast<double>(points.size());
+  return std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)));
+}
+
+double flat_share(const std::vector<FloorPoint>& points, const Eigen::Vector3d& plane) {
+  const auto flat = std::count_if(points.begin(), points.end(), [&](const FloorPoint& p) {
+    return std::abs(p.z - p.row.dot(plane)) < kBiweight * p.sigma;
+  });
+  return static_cast<double>(flat) / static_cast<double>(points.size());
 }
 
 }  // namespace
@@ -53,6 +74,7 @@ FloorTracker::FloorTracker(const FloorTrackerConfig& config) : config_(config) {
 bool FloorTracker::update(const DepthScan& scan) {
   const auto points = floor_points(scan, covariance_);
   if (static_cast<int>(points.size()) < config_.min_points) return false;
+  if (range_spread(points) < kLeastRangeSpreadM) return false;
   const double wh = config_.height_walk_m, wt = config_.tilt_walk_rad;
   Eigen::Matrix3d prior = covariance_;
   prior.diagonal() += Eigen::Vector3d(wh * wh, wt * wt, wt * wt);
@@ -75,6 +97,7 @@ bool FloorTracker::update(const DepthScan& scan) {
     step = h.ldlt().solve(b);
     information = h;
   }
+  if (flat_share(points, step) < kLeastFlatShare) return false;
   const FloorPlane next{
       plane_.height_m + step[0], plane_.slope_x + step[1], plane_.slope_y + step[2], 0, 0,
       plane_.looks + 1};

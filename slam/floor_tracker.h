@@ -13,7 +13,7 @@ struct FloorTrackerConfig {
   double mount_tilt_sigma_rad = 0.03;
   double height_walk_m = 0.0003;  ///< change from one look to the next: tyres, rocking
   double tilt_walk_rad = 0.0005;
-  int min_points = 80;  ///< fewer floor points say nothing
+  int min_points = 40;  ///< fewer floor points say nothing
 };
 
 /// The floor as a plane z = height + slope_x x + slope_y y in the level frame that the nominal

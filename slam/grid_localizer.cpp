@@ -20,7 +20,6 @@ namespace rovigo::slam {
 
 namespace {
 
-constexpr int kPixelStep = 4;
 constexpr double kMinInlierShare = 0.5;  // less of the scan on the map's walls: a different place
 constexpr int kMinPoints = 20;
 constexpr double kOkSigmaM = 0.10;
@@ -49,36 +48,13 @@ struct GridLocalizer::Impl {
     motion.place(prior.map_from_base, prior.sigma_position_m, prior.sigma_heading_rad);
   }
 
-  /// The nearest surface at obstacle height in each looked-at image column.
-  std::vector<ScanPoint> scan_of(const mrpt::obs::CObservation3DRangeScan& observation) const {
-    const cv::Mat depth = depth_view(observation);
-    std::vector<ScanPoint> scan;
-    for (int u = 0; u < depth.cols; u += kPixelStep) {
-      ScanPoint nearest;
-      double nearest_m = config.grid.mapping_range_m;
-      for (int v = 0; v < depth.rows; v += kPixelStep) {
-        const double z =
-            depth.at<std::uint16_t>(v, u) * static_cast<double>(observation.rangeUnits);
-        if (z < config.depth.min_depth_m || z >= nearest_m) continue;
-        const Eigen::Vector3d p = base_from_camera.rotation *
-                                      camera.unproject(camera.undistort(Eigen::Vector2d(u, v)), z) +
-                                  base_from_camera.translation;
-        if (p.z() < config.grid.obstacle_min_height_m ||
-            p.z() > config.grid.obstacle_max_height_m) {
-          continue;
-        }
-        nearest_m = z;
-        nearest = {{p.x(), p.y()}, config.depth.sigma_at_1m_m * z * z};
-      }
-      if (nearest_m < config.grid.mapping_range_m) scan.push_back(nearest);
-    }
-    return scan;
-  }
-
   void look(double time_s, const mrpt::obs::CObservation3DRangeScan& observation) {
     motion.advance_to(time_s);
     const GridMatch match =
-        match_scan(field, scan_of(observation), motion.map_from_base(), motion.pose_covariance());
+        match_scan(field,
+                   obstacle_points(depth_view(observation), observation.rangeUnits, camera,
+                                   base_from_camera, config),
+                   motion.map_from_base(), motion.pose_covariance());
     if (match.points < kMinPoints || match.inlier_share < kMinInlierShare) return;
     motion.correct(match.look, kLookFloorM, kLookFloorRad);
     last_agreement_s = time_s;

@@ -9,7 +9,7 @@ namespace rovigo::slam {
 
 namespace {
 
-constexpr int kOccupiedSteps = 16;  // log-odds 1: more than one look, or a rare clear one
+constexpr int kOccupiedSteps = 8;  // log-odds 0.5: far surfaces, rarely seen, are obstacles too
 constexpr int kFreeSteps = -5;
 constexpr int kMostCells = 8000;  // a side
 constexpr int kStripRows = 64;

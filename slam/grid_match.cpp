@@ -15,6 +15,8 @@ constexpr double kGridSigmaM = 0.02;  // a wall's place within its 5 cm cell
 constexpr double kCauchyScale = 2.0;  // in sigmas
 constexpr double kInlierSigmas = 3.0;
 constexpr int kIterations = 15;
+constexpr int kPixelStep = 4;
+constexpr double kNearWallM = 0.12;  // two cells, and a pose as good as appearance gives it
 // Neighbouring points share their errors (one wall, one cell row): count them as fewer.
 constexpr double kIndependentShare = 0.1;
 
@@ -97,6 +99,44 @@ SignedDistanceField::Sample SignedDistanceField::at(const TPoint2D& point) const
       ((1 - fx) * (corner[1][0] - corner[0][0]) + fx * (corner[1][1] - corner[0][1])) /
       geometry_.resolution_m;
   return out;
+}
+
+ScanAgreement scan_agreement(const SignedDistanceField& field, const std::vector<ScanPoint>& scan,
+                             const TPose2D& map_from_base) {
+  ScanAgreement out;
+  out.points = static_cast<int>(scan.size());
+  if (scan.empty()) return out;
+  double sum = 0.0;
+  for (const ScanPoint& p : scan) {
+    const auto sample = field.at(maps::transform(map_from_base, p.base_point));
+    const bool near = std::abs(sample.meters) < kNearWallM + kInlierSigmas * p.sigma_m;
+    sum += !sample.known ? 0.5 : near ? 1.0 : 0.0;
+  }
+  out.share = sum / static_cast<double>(scan.size());
+  return out;
+}
+
+std::vector<ScanPoint> obstacle_points(const cv::Mat& depth, double unit_m,
+                                       const CameraModel& camera, const Se3& base_from_camera,
+                                       const SlamConfig& config) {
+  std::vector<ScanPoint> scan;
+  for (int u = 0; u < depth.cols; u += kPixelStep) {
+    ScanPoint nearest;
+    double nearest_m = config.grid.mapping_range_m;
+    for (int v = 0; v < depth.rows; v += kPixelStep) {
+      const double z = depth.at<std::uint16_t>(v, u) * unit_m;
+      if (z < config.depth.min_depth_m || z >= nearest_m) continue;
+      const Eigen::Vector3d p =
+          base_from_camera * camera.unproject(camera.undistort(Eigen::Vector2d(u, v)), z);
+      if (p.z() < config.grid.obstacle_min_height_m || p.z() > config.grid.obstacle_max_height_m) {
+        continue;
+      }
+      nearest_m = z;
+      nearest = {{p.x(), p.y()}, config.depth.sigma_at_1m_m * z * z};
+    }
+    if (nearest_m < config.grid.mapping_range_m) scan.push_back(nearest);
+  }
+  return scan;
 }
 
 GridMatch match_scan(const SignedDistanceField& field, const std::vector<ScanPoint>& scan,

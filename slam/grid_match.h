@@ -3,10 +3,13 @@
 // Probabilistic Robotics, section 6.4, with a signed distance so that points behind a surface pull
 // as well.
 
+#include <opencv2/core.hpp>
 #include <vector>
 
 #include "maps/occupancy_grid.h"
+#include "slam/camera_model.h"
 #include "slam/planar_information.h"
+#include "slam/se3.h"
 
 namespace rovigo::slam {
 
@@ -41,6 +44,21 @@ struct GridMatch {
   int points = 0;          ///< that fell on known ground
   double inlier_share = 0.0;
 };
+
+/// How a scan lies on the grid at a pose, without moving it.
+struct ScanAgreement {
+  int points = 0;
+  /// Of them, those near a boundary of free and occupied; what falls on ground nobody has seen
+  /// counts half. 1 without points.
+  double share = 1.0;
+};
+ScanAgreement scan_agreement(const SignedDistanceField& field, const std::vector<ScanPoint>& scan,
+                             const TPose2D& map_from_base);
+
+/// The nearest surface at obstacle height in every few image columns.
+std::vector<ScanPoint> obstacle_points(const cv::Mat& depth, double unit_m,
+                                       const CameraModel& camera, const Se3& base_from_camera,
+                                       const SlamConfig& config);
 
 /// Gauss-Newton from the prior pose; the prior holds the directions the scan says nothing about.
 GridMatch match_scan(const SignedDistanceField& field, const std::vector<ScanPoint>& scan,

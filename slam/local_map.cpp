@@ -11,8 +11,6 @@ constexpr std::size_t kObservers = 10;  // keyframes that see what is tracked
 constexpr std::size_t kRelatives = 4;   // and of the reference's neighbours
 constexpr int kMinShared = 15;
 constexpr std::size_t kAny = 20;  // features; fewer cannot be recognised
-constexpr int kTelling = 60;      // landmarks: a view that must show so many can contradict
-constexpr int kProvenFrames = 3;  // a corner of noise is not found again as often
 
 void add_unique(std::vector<int>& list, int id) {
   if (std::find(list.begin(), list.end(), id) == list.end()) list.push_back(id);
@@ -75,19 +73,6 @@ double nearest_spacing(const LandmarkMap& map, const LocalMap& local, const Se3&
 }
 
 }  // namespace
-
-bool is_new_place(const LandmarkMap& map, const LocalMap& local, const Se3& map_from_base) {
-  return nearest_spacing(map, local, map_from_base) > 1.0;
-}
-
-bool view_is_mapped(const LandmarkMap& map, const LocalMap& local, const Se3& map_from_base) {
-  const auto visible = visible_landmarks(map, local.landmarks, map_from_base);
-  const auto proven = std::count_if(visible.begin(), visible.end(), [&](const auto& v) {
-    const Landmark& l = map.landmark(v.landmark);
-    return l.tracked >= kProvenFrames && 2 * l.tracked >= l.predicted;
-  });
-  return proven >= kTelling;
-}
 
 bool wants_keyframe(const LandmarkMap& map, const LocalMap& local, const TrackResult& result,
                     const FeatureSet& features, const Se3& map_from_base) {

@@ -22,13 +22,6 @@ LocalMap select_local_map(const LandmarkMap& map, const std::vector<int>& tracke
 /// How far one pose is from another, in units of the keyframe spacing (1: time for a new one).
 double keyframe_spacing(const Se3& a, const Se3& b, const TrackingConfig& config);
 
-/// Whether the map knows enough of this view to contradict it: landmarks that frames have found
-/// again and again, and that must be seen from here.
-bool view_is_mapped(const LandmarkMap& map, const LocalMap& local, const Se3& map_from_base);
-
-/// True when no keyframe of the local map was made near here, looking this way.
-bool is_new_place(const LandmarkMap& map, const LocalMap& local, const Se3& map_from_base);
-
 /// True when the frame shows enough that no keyframe shows yet.
 bool wants_keyframe(const LandmarkMap& map, const LocalMap& local, const TrackResult& result,
                     const FeatureSet& features, const Se3& map_from_base);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "maps/map_file.h"
+#include "slam/localizer_evidence.h"
 #include "slam/pose_estimate.h"
 #include "slam/rig.h"
 #include "slam/slam_config.h"
@@ -21,7 +22,8 @@ struct PosePrior {
 };
 
 /// Feed it every observation in time order. Without a prior it finds itself by appearance first,
-/// geometry to confirm; it says kLost until then.
+/// geometry to confirm; it says kLost until then, kDegraded while the place is being confirmed, and
+/// kOk only while frames keep matching the map and nothing they show contradicts it.
 class Localizer {
  public:
   Localizer(const SlamConfig& config, const Rig& rig, const maps::SavedMap& map,
@@ -30,6 +32,9 @@ class Localizer {
 
   /// The pose after this observation: corrected by a camera frame, carried on by wheels and gyro.
   PoseEstimate process(const mrpt::obs::CObservation& observation);
+
+  /// What the last estimate's confidence was computed from; nothing while no place is believed.
+  std::optional<LocalizerEvidence> evidence() const;
 
  private:
   struct Impl;

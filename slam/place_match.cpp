@@ -13,6 +13,11 @@ namespace {
 constexpr int kSamples = 250;
 constexpr double kSampleGatePx = 8.0;  // mild: a sample of three noisy depths is rough
 constexpr double kRatio = 0.85;
+constexpr double kSameHeightM = 0.06;     // a rover on its floor sees a point at the height it has,
+constexpr double kHeightPerRange = 0.02;  // give or take tilt and the depth's own error
+constexpr double kFloorM = 0.06;          // landmarks below lie on the floor
+constexpr double kCeilingM = 1.9;         // and above may hang from the ceiling
+constexpr double kMinBaselineM = 0.3;     // of two points, across the floor
 
 struct Pair {
   Eigen::Vector3d point_map;
@@ -50,7 +55,42 @@ int count_agreeing(const LandmarkMap& map, const std::vector<Pair>& pairs,
   return n;
 }
 
-/// RANSAC (Fischler & Bolles 1981) over triples of points known in both frames.
+/// Three points known in both frames fix a rigid motion; nothing for a triple that is not rigid.
+std::optional<Se3> fit_triple(const std::vector<const Pair*>& solid, std::mt19937_64& random) {
+  std::vector<Eigen::Vector3d> source, target;
+  for (int k = 0; k < 3; ++k) {
+    const Pair& p = *solid[random() % solid.size()];
+    source.push_back(p.point_base);
+    target.push_back(p.point_map);
+  }
+  // A rigid scene keeps its distances: most wrong triples fail here, before the fit.
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double a = (source[k] - source[(k + 1) % 3]).norm();
+    const double b = (target[k] - target[(k + 1) % 3]).norm();
+    if (!(a > 0.1 && b > 0.1 && std::abs(a - b) < 0.1 + 0.05 * (a + b))) return std::nullopt;
+  }
+  return fit_rigid(source, target);
+}
+
+/// On the floor two points are enough: the direction between them is the heading.
+std::optional<Se3> fit_pair(const std::vector<const Pair*>& solid, std::mt19937_64& random) {
+  const Pair& p = *solid[random() % solid.size()];
+  const Pair& q = *solid[random() % solid.size()];
+  const Eigen::Vector2d source = (q.point_base - p.point_base).head<2>();
+  const Eigen::Vector2d target = (q.point_map - p.point_map).head<2>();
+  const double a = source.norm(), b = target.norm();
+  if (!(a > kMinBaselineM && b > kMinBaselineM && std::abs(a - b) < 0.05 + 0.03 * (a + b))) {
+    return std::nullopt;
+  }
+  const double yaw =
+      maps::wrap_angle(std::atan2(target.y(), target.x()) - std::atan2(source.y(), source.x()));
+  const Eigen::Vector2d from = 0.5 * (p.point_base + q.point_base).head<2>();
+  const Eigen::Vector2d to = 0.5 * (p.point_map + q.point_map).head<2>();
+  const TPoint2D turned = maps::transform(TPose2D(0.0, 0.0, yaw), {from.x(), from.y()});
+  return from_planar({to.x() - turned.x, to.y() - turned.y, yaw});
+}
+
+/// RANSAC (Fischler & Bolles 1981) over the fewest points that fix a pose.
 std::pair<int, Se3> best_sample(const LandmarkMap& map, const std::vector<Pair>& pairs,
                                 bool on_floor, std::uint64_t seed) {
   std::vector<const Pair*> solid;
@@ -62,31 +102,29 @@ std::pair<int, Se3> best_sample(const LandmarkMap& map, const std::vector<Pair>&
   std::mt19937_64 random(seed);
   int samples = kSamples;
   for (int i = 0; i < samples; ++i) {
-    std::vector<Eigen::Vector3d> source, target;
-    for (int k = 0; k < 3; ++k) {
-      const Pair& p = *solid[random() % solid.size()];
-      source.push_back(p.point_base);
-      target.push_back(p.point_map);
-    }
-    // A rigid scene keeps its distances: most wrong triples fail here, before the fit.
-    bool rigid = true;
-    for (std::size_t k = 0; k < 3 && rigid; ++k) {
-      const double a = (source[k] - source[(k + 1) % 3]).norm();
-      const double b = (target[k] - target[(k + 1) % 3]).norm();
-      rigid = a > 0.1 && b > 0.1 && std::abs(a - b) < 0.1 + 0.05 * (a + b);
-    }
-    if (!rigid) {
+    const auto fit = on_floor ? fit_pair(solid, random) : fit_triple(solid, random);
+    if (!fit) {
       if (samples < 8 * kSamples) ++samples;  // a cheap miss does not use up a sample
       continue;
     }
-    auto fit = fit_rigid(source, target);
-    if (!fit) continue;
-    if (on_floor) fit = from_planar(to_planar(*fit));
     const int agreeing = count_agreeing(map, pairs, *fit);
     if (agreeing > best.first) best = {agreeing, *fit};
     if (best.first * 10 > static_cast<int>(pairs.size()) * 7) break;
   }
   return best;
+}
+
+/// Matches that a rover on its floor may believe: a corner keeps its height.
+void drop_other_heights(const LandmarkMap& map, const FeatureSet& features,
+                        std::vector<FeatureMatch>& matches) {
+  std::erase_if(matches, [&](const FeatureMatch& m) {
+    const Feature& f = features[static_cast<std::size_t>(m.feature)];
+    if (f.depth_m <= 0) return false;
+    const Eigen::Vector3d here =
+        map.base_from_camera() * map.camera().unproject(f.pixel.cast<double>(), f.depth_m);
+    return std::abs(here.z() - map.landmark(m.landmark).position_map.z()) >
+           kSameHeightM + kHeightPerRange * f.depth_m;
+  });
 }
 
 PosePrior6 floor_prior(const Se3& near, const TrackingConfig& config) {
@@ -99,6 +137,10 @@ PosePrior6 floor_prior(const Se3& near, const TrackingConfig& config) {
 }
 
 }  // namespace
+
+bool is_upright(const Landmark& landmark) {
+  return landmark.position_map.z() > kFloorM && landmark.position_map.z() < kCeilingM;
+}
 
 std::optional<Se3> fit_rigid(const std::vector<Eigen::Vector3d>& source,
                              const std::vector<Eigen::Vector3d>& target) {
@@ -152,7 +194,8 @@ PlaceMatch match_place(const LandmarkMap& map, const std::vector<int>& core,
                        const PlaceMatchConfig& config) {
   PlaceMatch out;
   const TrackingConfig& tracking = map.config().tracking;
-  const auto by_appearance = match_by_appearance(map, core, features);
+  auto by_appearance = match_by_appearance(map, core, features);
+  if (on_floor) drop_other_heights(map, features, by_appearance);
   out.appearance_matches = static_cast<int>(by_appearance.size());
   if (out.appearance_matches < 10) return out;
 
@@ -182,7 +225,13 @@ PlaceMatch match_place(const LandmarkMap& map, const std::vector<int>& core,
     if (out.solution.is_inlier[i]) inliers.push_back(out.matches[i]);
   }
   out.matches = std::move(inliers);
-  out.accepted = out.solution.inliers >= config.min_inliers &&
+  out.upright_inliers =
+      static_cast<int>(std::count_if(out.matches.begin(), out.matches.end(), [&](const auto& m) {
+        return is_upright(map.landmark(m.landmark));
+      }));
+  const bool stands =
+      !on_floor || out.upright_inliers >= config.min_upright_share * config.min_inliers;
+  out.accepted = stands && out.solution.inliers >= config.min_inliers &&
                  out.solution.inliers >= config.min_inlier_share * tried &&
                  !out.solution.degenerate;
   return out;

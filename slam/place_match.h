@@ -13,14 +13,20 @@ namespace rovigo::slam {
 struct PlaceMatchConfig {
   int min_inliers = 25;
   double min_inlier_share = 0.35;  ///< of the guided matches
+  double min_upright_share = 0.4;  ///< of min_inliers, on what stands upright; on the floor only
   std::uint64_t seed = 1;          ///< of the random samples
 };
+
+/// Floors and ceilings repeat themselves, tile by tile, and show no place; what stands upright
+/// does. By height, which is all a landmark has.
+bool is_upright(const Landmark& landmark);
 
 struct PlaceMatch {
   bool accepted = false;
   PoseSolution solution;
   std::vector<FeatureMatch> matches;  ///< inliers only
-  int appearance_matches = 0;         ///< before geometry
+  int appearance_matches = 0;         ///< before geometry; on the floor, those at their height
+  int upright_inliers = 0;            ///< of the solution's, on what stands upright
   int sample_inliers = 0;             ///< that agreed with the best random sample
 };
 
@@ -30,8 +36,8 @@ std::vector<FeatureMatch> match_by_appearance(const LandmarkMap& map,
                                               const FeatureSet& features);
 
 /// `core`: landmarks of the suspected place, matched by appearance and fitted by RANSAC over
-/// triples of 3D points; `wide`: landmarks around it, matched by the pose found. `on_floor` keeps a
-/// rover on its plane.
+/// triples of 3D points (pairs on the floor); `wide`: landmarks around it, matched by the pose
+/// found. `on_floor` keeps a rover on its plane.
 PlaceMatch match_place(const LandmarkMap& map, const std::vector<int>& core,
                        const std::vector<int>& wide, const FeatureSet& features, bool on_floor,
                        const PlaceMatchConfig& config);

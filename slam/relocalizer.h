@@ -27,13 +27,28 @@ class Relocalizer {
   /// Adds a keyframe's descriptors (those with landmarks) to the index.
   void add(const LandmarkMap& map, int keyframe);
 
+  /// Landmarks that look like another one somewhere else in the map: bricks, tiles, the same print
+  /// in two rooms. They fit a pose, but say nothing about which place this is. By landmark id.
+  std::vector<bool> repeated_landmarks(const LandmarkMap& map) const;
+
   /// Tries the most similar keyframes, inside `region` if given, leaving out `excluded`.
   Relocalization find(const LandmarkMap& map, const FeatureSet& features, bool on_floor,
                       const std::optional<PoseRegion>& region, const std::vector<int>& excluded,
                       const PlaceMatchConfig& config) const;
 
+  /// Every place that geometry accepts among the most similar keyframes, the one with most inliers
+  /// first. At most `tries` are looked at by geometry, each somewhere else: keyframes that show
+  /// what an accepted one shows are passed over, so that look-alikes come to light.
+  std::vector<Relocalization> find_places(const LandmarkMap& map, const FeatureSet& features,
+                                          bool on_floor, const std::optional<PoseRegion>& region,
+                                          int tries, const PlaceMatchConfig& config) const;
+
  private:
+  PlaceMatch match(const LandmarkMap& map, int keyframe, const FeatureSet& features, bool on_floor,
+                   const PlaceMatchConfig& config) const;
+
   AppearanceIndex index_;
+  std::vector<int> landmark_of_;  ///< per descriptor in the index
 };
 
 }  // namespace rovigo::slam

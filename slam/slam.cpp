@@ -15,6 +15,7 @@
 #include "slam/keyframe_codec.h"
 #include "slam/landmark_map.h"
 #include "slam/local_map.h"
+#include "slam/localizer_depth_check.h"
 #include "slam/loop_closer.h"
 #include "slam/map_storage.h"
 #include "slam/motion_model.h"
@@ -32,7 +33,9 @@ namespace {
 // from one at any frame rate the wheels outpace.
 constexpr double kDeadReckonedEveryS = 0.02;
 constexpr int kMinFirstFeatures = 50;      // with depth, to start a map on
-constexpr int kPlenty = 150;               // features; fewer may be a hand or a dark room
+constexpr int kTellingLandmarks = 40;      // that should be in view: fewer prove nothing
+constexpr double kAgreeingShare = 0.5;     // of them that must be at their depth
+constexpr double kWorthlessSigmaM = 0.5;   // dead reckoning beyond it holds nobody back from a jump
 constexpr int kSearchEverywhereEvery = 5;  // frames without a match
 constexpr int kSearchWhenLostEvery = 2;
 constexpr int kFewInliers = 120;  // fewer leave the heading to noise: walls are asked too
@@ -88,7 +91,8 @@ struct Slam::Impl {
   TrackResult track(double time_s, const FeatureSet& features, const MotionPrediction& prediction);
   void recover(double time_s, const FeatureSet& features, TrackResult& result);
   void move_to(double time_s, const Se3& seen, const Se3& believed, int keyframe);
-  void judge(double time_s, const FeatureSet& features, bool tracked, const Se3& pose);
+  ViewVerdict verdict_on(const CameraFrame& frame, const Se3& pose) const;
+  void judge(const CameraFrame& frame, bool tracked, const Se3& pose);
   void remember_tracked(const TrackResult& result);
   bool frame_joins_map(const TrackResult& result, const FeatureSet& features,
                        const Se3& pose) const;
@@ -172,16 +176,17 @@ void Slam::Impl::recover(double time_s, const FeatureSet& features, TrackResult&
     keyframe = place.keyframe;
   }
   if (!found.accepted) return;
-  result.status = TrackStatus::kTracked;
-  result.solution = found.solution;
-  result.matches = found.matches;
-  // Far from what was believed, the prediction was worth nothing: carried, or lost for long.
   const MotionPrediction believed = motion.predict(time_s);
   const Se3& seen = found.solution.map_from_base;
   const double apart = (believed.prior.map_from_base.translation - seen.translation).norm();
   if (apart > kSurprisingM + 4.0 * believed.sigma_position_m) {
+    // A look-alike, unless something has shown that the prediction is worth nothing.
+    if (!lost && believed.sigma_position_m < kWorthlessSigmaM) return;
     move_to(time_s, seen, believed.prior.map_from_base, keyframe);
   }
+  result.status = TrackStatus::kTracked;
+  result.solution = found.solution;
+  result.matches = found.matches;
 }
 
 void Slam::Impl::move_to(double time_s, const Se3& seen, const Se3& believed, int keyframe) {
@@ -193,13 +198,19 @@ void Slam::Impl::move_to(double time_s, const Se3& seen, const Se3& believed, in
   health.found_elsewhere();
 }
 
+/// The landmarks that should be in view against the depth image; features need not be asked.
+ViewVerdict Slam::Impl::verdict_on(const CameraFrame& frame, const Se3& pose) const {
+  const DepthAgreement view = depth_agreement(map, local.landmarks, frame, pose, motion.planar());
+  if (view.judged() + view.hidden < kTellingLandmarks) return ViewVerdict::kSilent;
+  if (view.hidden > view.judged()) return ViewVerdict::kHidden;
+  return view.share() < kAgreeingShare ? ViewVerdict::kContradicts : ViewVerdict::kAgrees;
+}
+
 /// What this frame says about the pose believed; a jump that is confirmed mends the poses before.
-void Slam::Impl::judge(double time_s, const FeatureSet& features, bool tracked, const Se3& pose) {
-  const bool plenty = static_cast<int>(features.size()) >= kPlenty;
-  health.update({.time_s = time_s,
+void Slam::Impl::judge(const CameraFrame& frame, bool tracked, const Se3& pose) {
+  health.update({.time_s = frame.time_s,
                  .tracked = tracked,
-                 .plenty = plenty,
-                 .view_is_mapped = !tracked && plenty && view_is_mapped(map, local, pose),
+                 .verdict = tracked ? ViewVerdict::kAgrees : verdict_on(frame, pose),
                  .carried = motion.carried()});
   if (!jump || health.state() == TrackingState::kConfirming) return;
   if (health.state() == TrackingState::kTracking) {
@@ -373,7 +384,10 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
   const bool tracked = result.status == TrackStatus::kTracked;
   Se3 pose = prediction.prior.map_from_base;
   if (tracked) {
+    const Se3 predicted = motion.predict(frame.time_s).prior.map_from_base;
     pose = motion.correct(frame.time_s, result.solution);
+    // The first look at a place recognised is rough; those that confirm it sharpen the jump.
+    if (jump) jump->new_map_from_old_map = pose * predicted.inverse() * jump->new_map_from_old_map;
     anchor = local.reference_keyframe;
     remember_tracked(result);
     if (result.solution.inliers < kFewInliers) pose = follow_walls(frame, pose);
@@ -390,7 +404,7 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
           result.solution.inliers, tracked, (int)health.state(), prediction.sigma_position_m,
           pose.translation.x(), pose.translation.y(), to_planar(pose).phi, map.keyframes().size(),
           motion.dead_reckoning().calibration()(0), motion.dead_reckoning().calibration()(1));
-  judge(frame.time_s, features, tracked, pose);
+  judge(frame, tracked, pose);
   if (!frame.gray.empty() && frame_joins_map(result, features, pose)) {
     insert_keyframe(frame, std::move(features), result, pose);
     pose = map.keyframe(anchor).map_from_base;  // a loop may have moved it

@@ -32,6 +32,7 @@ Surroundings::Surroundings(const SlamConfig& config, const CameraModel& camera,
     : config_(config),
       base_from_camera_(base_from_camera),
       on_floor_(on_floor),
+      filter_(DepthFilterConfig{}),
       scanner_(camera, config.depth),
       voter_(config.grid, config.depth) {}
 
@@ -70,9 +71,16 @@ std::size_t Surroundings::patch_of(const LandmarkMap& map, int keyframe) {
   return patch;
 }
 
-void Surroundings::add(const cv::Mat& depth, double unit_m, const Se3& level_from_camera,
-                       const TPose2D& patch_from_level, EvidencePatch& patch) {
-  voter_.vote(scanner_.scan(depth, unit_m, level_from_camera), patch_from_level, patch);
+/// Heights count from the floor that the camera sees. What a scan shows of it corrects the next
+/// one, and the scan itself while much is still to be learnt.
+DepthScan Surroundings::scan_above_floor(const CameraFrame& frame) {
+  // Looks are taken on the move, where nothing may be averaged over time.
+  const cv::Mat depth = filter_.apply(frame.depth, false);
+  const auto scan = [&] {
+    return scanner_.scan(depth, frame.depth_unit_m, floor_.corrected(base_from_camera_));
+  };
+  DepthScan out = scan();
+  return floor_.update(out) ? scan() : out;
 }
 
 void Surroundings::look(const CameraFrame& frame, const LandmarkMap& map, int keyframe,
@@ -87,7 +95,7 @@ void Surroundings::look(const CameraFrame& frame, const LandmarkMap& map, int ke
   const TPose2D map_from_patch = maps::compose(
       to_planar(map.keyframe(patch.keyframe).map_from_base), patch.keyframe_from_patch);
   const TPose2D patch_from_level = maps::compose(maps::inverse(map_from_patch), to_planar(pose));
-  add(frame.depth, frame.depth_unit_m, base_from_camera_, patch_from_level, patch.evidence);
+  voter_.vote(scan_above_floor(frame), patch_from_level, patch.evidence);
   voter_.vote_driven(maps::position_of(patch_from_level), kBodyRadiusM, patch.evidence);
 }
 
@@ -100,9 +108,10 @@ void Surroundings::add_keyframes(const LandmarkMap& map) {
     const TPose2D map_from_patch = frame_at(k.map_from_base, config_.grid.grid_resolution_m);
     const TPose2D map_from_level = to_planar(k.map_from_base);
     patches_.push_back({k.id, maps::compose(maps::inverse(map_from_level), map_from_patch), {}});
-    add(decode_depth(k.depth_png, {map.camera().width(), map.camera().height()}), kStoredDepthUnitM,
-        view.level_from_camera, maps::compose(maps::inverse(map_from_patch), map_from_level),
-        patches_.back().evidence);
+    const cv::Mat depth = decode_depth(k.depth_png, {map.camera().width(), map.camera().height()});
+    voter_.vote(scanner_.scan(depth, kStoredDepthUnitM, view.level_from_camera),
+                maps::compose(maps::inverse(map_from_patch), map_from_level),
+                patches_.back().evidence);
   }
 }
 

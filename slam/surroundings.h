@@ -6,8 +6,10 @@
 
 #include "maps/occupancy_grid.h"
 #include "slam/camera_frame.h"
+#include "slam/depth_filter.h"
 #include "slam/depth_scan.h"
 #include "slam/evidence_patch.h"
+#include "slam/floor_tracker.h"
 #include "slam/landmark_map.h"
 #include "slam/ray_voter.h"
 
@@ -29,6 +31,9 @@ class Surroundings {
   /// The grid, from the poses as the keyframes are now.
   maps::OccupancyGrid render(const LandmarkMap& map);
 
+  /// The floor as the camera has seen it so far, against what the mount says.
+  const FloorPlane& floor() const { return floor_.plane(); }
+
   std::size_t memory_bytes() const;
 
  private:
@@ -41,14 +46,15 @@ class Surroundings {
   std::size_t patch_of(const LandmarkMap& map, int keyframe);
   std::size_t nearby_patch(const LandmarkMap& map, int keyframe) const;
   void add_keyframes(const LandmarkMap& map);
-  void add(const cv::Mat& depth, double unit_m, const Se3& level_from_camera,
-           const TPose2D& patch_from_level, EvidencePatch& patch);
+  DepthScan scan_above_floor(const CameraFrame& frame);
 
   SlamConfig config_;
   Se3 base_from_camera_;
   bool on_floor_;
+  DepthFilter filter_;
   DepthScanner scanner_;
   RayVoter voter_;
+  FloorTracker floor_;
   std::vector<AnchoredPatch> patches_;
   std::map<int, std::size_t> patch_of_keyframe_;
   int last_keyframe_ = -1;

@@ -4,9 +4,10 @@ namespace rovigo::slam {
 
 namespace {
 
-// A person who fills the view for a moment is no proof; a view that stays foreign is.
 constexpr double kContradictedForS = 0.6;
 constexpr int kContradictingFrames = 3;
+// Somebody who stands in the way for so long may as well have carried the rover off.
+constexpr double kHiddenForS = 3.0;
 constexpr int kConfirmingFrames = 4;
 
 }  // namespace
@@ -14,7 +15,7 @@ constexpr int kConfirmingFrames = 4;
 void TrackingHealth::update(const FrameEvidence& frame) {
   if (state_ == TrackingState::kTracking && !frame.tracked) doubted_since_s_ = frame.time_s;
   if (frame.tracked) {
-    contradictions_ = 0;
+    doubts_ = contradictions_ = 0;
     const bool must_confirm =
         state_ == TrackingState::kLost || state_ == TrackingState::kConfirming;
     confirmations_ = must_confirm ? confirmations_ + 1 : 0;
@@ -28,12 +29,16 @@ void TrackingHealth::update(const FrameEvidence& frame) {
     return;
   }
   state_ = TrackingState::kReckoning;
-  if (frame.plenty && frame.view_is_mapped && contradictions_++ == 0) {
-    contradicted_since_s_ = frame.time_s;
+  const bool contradicts = frame.verdict == ViewVerdict::kContradicts;
+  if (frame.verdict == ViewVerdict::kAgrees) doubts_ = contradictions_ = 0;
+  if (contradicts || frame.verdict == ViewVerdict::kHidden) {
+    if (doubts_++ == 0) hidden_since_s_ = frame.time_s;
+    if (contradicts && contradictions_++ == 0) contradicted_since_s_ = frame.time_s;
   }
   const bool contradicted = contradictions_ >= kContradictingFrames &&
                             frame.time_s - contradicted_since_s_ >= kContradictedForS;
-  if (contradicted || frame.carried) state_ = TrackingState::kLost;
+  const bool hidden = doubts_ > 0 && frame.time_s - hidden_since_s_ >= kHiddenForS;
+  if (contradicted || hidden || frame.carried) state_ = TrackingState::kLost;
 }
 
 void TrackingHealth::found_elsewhere() {

@@ -3,13 +3,20 @@
 
 namespace rovigo::slam {
 
+/// What the depth image says of the landmarks that should be in view, where features said nothing.
+enum class ViewVerdict {
+  kSilent,       ///< too few to judge: a place or a direction that is not mapped
+  kAgrees,       ///< they are where they should be: blur, or a change of light
+  kHidden,       ///< something stands before them
+  kContradicts,  ///< the camera looks through them: this is another place
+};
+
 /// What one camera frame says about the pose believed.
 struct FrameEvidence {
   double time_s = 0.0;
   bool tracked = false;
-  bool plenty = false;          ///< shows enough features to be recognised by
-  bool view_is_mapped = false;  ///< somebody looked this way from here before
-  bool carried = false;         ///< the body turned while its wheels stood
+  ViewVerdict verdict = ViewVerdict::kSilent;  ///< unless tracked
+  bool carried = false;                        ///< the body turned while its wheels stood
 };
 
 enum class TrackingState {
@@ -27,18 +34,19 @@ class TrackingHealth {
   /// The place was recognised far from the believed pose.
   void found_elsewhere();
 
-  /// Dead reckoning may be built upon: nothing has contradicted it.
+  /// Dead reckoning may be built upon: nothing speaks against it.
   bool is_trusted() const {
     return state_ == TrackingState::kTracking ||
-           (state_ == TrackingState::kReckoning && contradictions_ == 0);
+           (state_ == TrackingState::kReckoning && doubts_ == 0);
   }
   /// When the camera first failed to agree; meaningful unless tracking.
   double doubted_since_s() const { return doubted_since_s_; }
 
  private:
   TrackingState state_ = TrackingState::kReckoning;
-  int contradictions_ = 0;  ///< frames since the last tracked one that should have matched
-  double contradicted_since_s_ = 0.0;
+  int doubts_ = 0;  ///< frames in a row that hide or contradict what should be seen
+  int contradictions_ = 0;
+  double hidden_since_s_ = 0.0, contradicted_since_s_ = 0.0;
   double doubted_since_s_ = 0.0;
   int confirmations_ = 0;
 };

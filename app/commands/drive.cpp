@@ -147,6 +147,9 @@ int run_drive(const DriveOptions& options) {
   const auto poses = open_pose_source(pose_kind, config, ground, map, simulator, options, start);
 
   control::TrajectoryTracker tracker(config.control, config.robot, plan.result.trajectory);
+  if (pose_kind == "slam" && !look_around(simulator, *poses, start)) {
+    console.warn("the start was not recognised, not even by looking around");
+  }
   control::DriveLog log;
   {
     Progress progress("driving");

@@ -92,7 +92,8 @@ TEST(PoseGraphProperty, TrueLoopsTakeTheDriftOut) {
 TEST(PoseGraphProperty, PlantedFalseLoopsDoNotBendTheMap) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Graph g = square(seed);
-    const double without = rmse(optimize_pose_graph({g.drifted, g.edges, {}}, {}, 30).poses, g.truth);
+    const double without =
+        rmse(optimize_pose_graph({g.drifted, g.edges, {}}, {}, 30).poses, g.truth);
     std::mt19937_64 random(seed);
     const std::size_t honest = g.edges.size();
     for (int i = 0; i < 4; ++i) {
@@ -126,6 +127,41 @@ TEST(PoseGraphProperty, TheSameGraphGivesTheSameBits) {
 TEST(PoseGraphProperty, AnEmptyGraphChangesNothing) {
   EXPECT_TRUE(optimize_pose_graph({}, {}, 10).poses.empty());
   EXPECT_EQ(optimize_pose_graph({{Se3{}}, {}, {}}, {}, 10).poses.size(), 1u);
+}
+
+TEST(PoseGraph, OneLoopTeachesTheWheelsScale) {
+  // 10 m out and 10 m back with wheels that read 3% too little; the end is known to be the start.
+  constexpr double kScale = 0.03;
+  PoseGraph graph;
+  std::vector<Se3> truth;
+  TPose2D believed, at;
+  for (int i = 0; i <= 40; ++i) {
+    truth.push_back(from_planar(at));
+    graph.poses.push_back(from_planar(believed));
+    const double turn = i == 20 ? maps::kPi : 0.0;
+    MotionLink link;
+    link.from = i;
+    link.to = i + 1;
+    link.begin_s = i;
+    link.end_s = i + 1;
+    link.from_from_to = {0.5 / (1.0 + kScale), 0, turn};
+    link.by_calibration(0, 1) = link.from_from_to.x;
+    link.covariance = Eigen::Vector3d(1e-6, 1e-6, 1e-8).asDiagonal();
+    if (i < 40) graph.links.push_back(link);
+    at = maps::compose(at, {0.5, 0, turn});
+    believed = maps::compose(believed, link.from_from_to);
+  }
+  // A landmark seen from 5 m and from 7 m along the way fixes the scale.
+  PoseGraphEdge seen;
+  seen.from = 10;
+  seen.to = 14;
+  seen.from_from_to = truth[10].inverse() * truth[14];
+  seen.information = information(0.002, 0.001);
+  graph.edges.push_back(seen);
+  const PoseGraphResult r = optimize_pose_graph(graph, DeadReckoningConfig{}, 30);
+  ASSERT_TRUE(r.converged);
+  EXPECT_GT(rmse(graph.poses, truth), 0.1);
+  EXPECT_LT(rmse(r.poses, truth), 0.03);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 #include <map>
 
 #include "recordings.h"
@@ -18,8 +19,9 @@ constexpr double kTurnS = 7.5;         // two and a half after the time allowed
 constexpr double kRightWithinS = 5.0;  // issue 3
 constexpr double kKidnapAtS = 5.0, kKidnapRunS = 12.0;
 constexpr double kBlindBeforeS = 0.3, kBlindS = 1.0;  // every other kidnap: carried in a bag
-constexpr double kBlackoutRunS = 32.0, kBlackoutS = 3.0;
-constexpr double kBlackouts[] = {12.0, 22.0};
+constexpr std::size_t kBlackoutWaypoints = 5;         // of the mapping tour, driven again
+constexpr double kBlackoutS = 3.0;
+constexpr double kBlackouts[] = {8.0, 15.0};
 
 struct Options {
   std::filesystem::path folder = "runs/localize";
@@ -31,6 +33,7 @@ struct Options {
   bool remap = false;
   bool record_only = false;
   bool trace = false;
+  std::filesystem::path dump;
   double reach_m = 1.0;
   std::vector<std::string> set;
 };
@@ -61,6 +64,29 @@ void print_trace(const Run& run) {
     std::printf("    %7.3f %c %-8s confidence %.3f sigma %.3f error %.3f m %.3f rad%s\n", a.time_s,
                 a.is_frame ? 'F' : ' ', to_string(a.health), a.confidence, a.sigma_position_m,
                 a.error_m, a.error_rad, a.confidently_wrong() ? "  CONFIDENTLY WRONG" : "");
+    if (!a.is_frame || !a.evidence) continue;
+    const slam::LocalizerEvidence& e = *a.evidence;
+    std::printf(
+        "            inliers %d matched %.2f depth %.2f scan %.2f frames %d recognised %.2f rival "
+        "%.2f\n",
+        e.inliers, e.matched_share, e.depth_share, e.scan_share, e.agreeing_frames, e.recognitions,
+        e.rival_share);
+  }
+}
+
+/// One line a camera frame with a believed place: right or not, the chance that dead reckoning
+/// alone leaves, and the inputs of the confidence. fit_confidence.py reads it.
+void dump(const std::vector<Run>& runs, const std::filesystem::path& file) {
+  std::ofstream out(file);
+  for (const Run& run : runs) {
+    for (const Answer& a : run.answers) {
+      if (!a.is_frame || !a.evidence) continue;
+      out << a.right() << ','
+          << slam::chance_within_limits(a.evidence->sigma_position_m,
+                                        a.evidence->sigma_heading_rad);
+      for (const double x : slam::confidence_features(*a.evidence)) out << ',' << x;
+      out << '\n';
+    }
   }
 }
 
@@ -78,6 +104,7 @@ class Bench {
   void kidnaps(const MappedWorld& world);
   void blackouts(const MappedWorld& world);
   void report() const;
+  const std::vector<Run>& runs() const { return runs_; }
 
  private:
   std::optional<Run> run(const MappedWorld& world, const std::filesystem::path& recording);
@@ -204,11 +231,12 @@ void Bench::blackouts(const MappedWorld& world) {
   for (const std::string kind : {"missing", "covered"}) {
     const auto recording = world.folder / ("blackouts_" + kind + ".rawlog");
     if (!is_made(recording)) {
-      planning::Trajectory tour = plan_tour(world.name, world.world, world.true_grid, config_);
-      std::erase_if(tour.points, [](const auto& p) { return p.time_s > kBlackoutRunS; });
+      sim::Route route = mapping_route(world.name, world.world, config_);
+      route.turns.clear();
+      route.waypoints.resize(std::min(route.waypoints.size(), kBlackoutWaypoints));
       sim::Scenario scenario;
       for (const double start : kBlackouts) scenario.blackouts.push_back({start, kBlackoutS, kind});
-      record_drive(world.world, world.name, tour, scenario, 2, config_, recording);
+      record_drive(world.world, world.name, route, scenario, 2, config_, recording);
     }
     const auto result = run(world, recording);
     if (!result) continue;
@@ -288,6 +316,7 @@ int run_all(int argc, char** argv) {
   cli.add_flag("--remap", options.remap, "make the maps again from the kept tours");
   cli.add_flag("--record-only", options.record_only, "make recordings, localise nothing");
   cli.add_flag("--trace", options.trace, "print every frame");
+  cli.add_option("--dump", options.dump, "CSV of the evidence, for fit_confidence.py");
   cli.add_option("--set", options.set, "a setting, as on every command");
   CLI11_PARSE(cli, argc, argv);
   const app::RovigoConfig config = app::load_config(std::nullopt, options.set);
@@ -300,6 +329,7 @@ int run_all(int argc, char** argv) {
     if (options.blackouts) bench.blackouts(world);
   }
   bench.report();
+  if (!options.dump.empty()) dump(bench.runs(), options.dump);
   return 0;
 }
 

@@ -7,7 +7,7 @@
 
 #include "app/config.h"
 #include "maps/map_file.h"
-#include "planning/trajectory.h"
+#include "sim/route.h"
 #include "sim/world.h"
 
 namespace rovigo::slam_localize {
@@ -22,13 +22,11 @@ struct MappedWorld {
   TPose2D world_from_map() const { return map.metadata.simulation->world_from_map; }
 };
 
-/// The tour: `lab_tour` in the lab; in a random office the shortest way through places that
-/// between them see all reachable ground from at most 1.5 m. No turns in place are added.
-planning::Trajectory plan_tour(const std::string& name, const sim::World& world,
-                               const maps::OccupancyGrid& grid, const app::RovigoConfig& config);
+/// The tour: `lab_tour` in the lab; elsewhere 40 m through random places, turning at each.
+sim::Route mapping_route(const std::string& name, const sim::World& world,
+                         const app::RovigoConfig& config);
 
-/// Reads `folder/tour.rawlog` and `folder/map.rovigo`, making what is missing; `remap` makes the
-/// map again from the recording.
+/// Reads `folder/map.rovigo`; where it is missing, or with `remap`, drives the tour and maps it.
 MappedWorld open_mapped_world(const std::string& name, const std::filesystem::path& folder,
                               const app::RovigoConfig& config, bool remap);
 

@@ -6,13 +6,14 @@
 #include <cmath>
 #include <random>
 
-#include "app/simulated_drive.h"
+#include "app/route_drive.h"
 #include "mapped_world.h"
 #include "maps/error.h"
 #include "maps/inflation.h"
 #include "planning/free_space.h"
 #include "sim/simulator.h"
 #include "slam/recording/recording.h"
+#include "slam/slam.h"
 #include "slam/trajectory_file.h"
 
 namespace rovigo::slam_localize {
@@ -22,19 +23,25 @@ namespace {
 constexpr double kKidnapDistanceM = 4.0;
 constexpr double kKidnapTurnDeg = 120.0;
 
+slam::RecordingInfo recording_info(const sim::Simulator& simulator, const std::string& world,
+                                   std::uint64_t seed) {
+  slam::RecordingInfo info;
+  info.rig.camera = simulator.rig().camera;
+  info.rig.base_from_camera = simulator.rig().base_from_camera;
+  info.rig.has_extrinsics = info.rig.has_wheels = info.rig.has_imu = true;
+  info.simulation =
+      maps::SimulationOrigin{world, seed, TPose2D(simulator.truth().world_from_base.asTPose())};
+  return info;
+}
+
 /// Writes observations and truth as they come; both appear only when whole.
 class Recorder {
  public:
   Recorder(const sim::Simulator& simulator, const std::string& world, std::uint64_t seed,
            std::filesystem::path file)
       : simulator_(simulator), file_(std::move(file)) {
-    slam::RecordingInfo info;
+    slam::RecordingInfo info = recording_info(simulator, world, seed);
     info.name = file_.stem().string();
-    info.rig.camera = simulator.rig().camera;
-    info.rig.base_from_camera = simulator.rig().base_from_camera;
-    info.rig.has_extrinsics = info.rig.has_wheels = info.rig.has_imu = true;
-    info.simulation =
-        maps::SimulationOrigin{world, seed, TPose2D(simulator.truth().world_from_base.asTPose())};
     writer_ = slam::create_rawlog(file_, info);
   }
   void take(const mrpt::obs::CObservation& observation) {
@@ -94,24 +101,46 @@ std::filesystem::path truth_of(const std::filesystem::path& recording) {
   return std::filesystem::path(recording).replace_extension(".truth.txt");
 }
 
-void record_drive(const sim::World& world, const std::string& world_name,
-                  const planning::Trajectory& trajectory, const sim::Scenario& scenario,
-                  std::uint64_t seed, const app::RovigoConfig& config,
-                  const std::filesystem::path& recording) {
-  sim::Simulator simulator(
-      world, simulator_options(trajectory.points.front().pose, scenario, seed, config));
-  Recorder recorder(simulator, world_name, seed, recording);
-  const auto poses = app::true_poses(simulator, TPose2D());
-  control::TrajectoryTracker tracker(config.control, config.robot, trajectory);
-  app::DriveHooks hooks;
-  hooks.observation = [&](const mrpt::obs::CObservation& o) { recorder.take(o); };
-  const control::DriveLog log = app::drive_in_simulator(simulator, TPose2D(), *poses, tracker,
-                                                        trajectory.duration_s(), hooks);
-  if (log.contact_events > 0 || log.status == control::TrackStatus::kNoProgress) {
-    throw maps::InputError("the drive in " + world_name + " failed: " + to_string(log.status) +
-                           ", " + std::to_string(log.contact_events) + " contacts");
+namespace {
+
+/// Drives a route on true poses; a collision spoils what is measured.
+template <class Take>
+void drive(sim::Simulator& simulator, const sim::Route& route, const TPose2D& start,
+           const planning::Planner& planner, const app::RovigoConfig& config, const Take& take) {
+  const app::RouteDriveResult result =
+      app::drive_route(simulator, route, start, planner, config,
+                       {.progress = {}, .observation = [&](const auto& o) { take(o); }});
+  if (!result.completed || result.log.contact_events > 0) {
+    throw maps::InputError("route " + route.name + " was not driven: " + result.message + ", " +
+                           std::to_string(result.log.contact_events) + " contacts");
   }
+}
+
+}  // namespace
+
+void record_drive(const sim::World& world, const std::string& world_name, const sim::Route& route,
+                  const sim::Scenario& scenario, std::uint64_t seed,
+                  const app::RovigoConfig& config, const std::filesystem::path& recording) {
+  const planning::Planner planner = app::route_planner(world, config, route.speed_m_s);
+  const TPose2D start = app::route_start(route, world, planner);
+  sim::Simulator simulator(world, simulator_options(start, scenario, seed, config));
+  Recorder recorder(simulator, world_name, seed, recording);
+  drive(simulator, route, start, planner, config, [&](const auto& o) { recorder.take(o); });
   recorder.finish();
+}
+
+maps::SavedMap map_drive(const sim::World& world, const std::string& world_name,
+                         const sim::Route& route, std::uint64_t seed,
+                         const app::RovigoConfig& config) {
+  const planning::Planner planner = app::route_planner(world, config, route.speed_m_s);
+  const TPose2D start = app::route_start(route, world, planner);
+  sim::Simulator simulator(world, simulator_options(start, sim::Scenario{}, seed, config));
+  const slam::RecordingInfo info = recording_info(simulator, world_name, seed);
+  slam::Slam slam(config.slam, info.rig);
+  drive(simulator, route, start, planner, config, [&](const auto& o) { slam.process(o); });
+  maps::SavedMap map = slam.finish();
+  map.metadata.simulation = info.simulation;
+  return map;
 }
 
 void record_turn(const sim::World& world, const std::string& world_name,

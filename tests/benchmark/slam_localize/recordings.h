@@ -7,7 +7,8 @@
 #include <string>
 
 #include "app/config.h"
-#include "planning/trajectory.h"
+#include "maps/map_file.h"
+#include "sim/route.h"
 #include "sim/scenario.h"
 #include "sim/world.h"
 
@@ -21,11 +22,15 @@ inline constexpr double kTurnRateRadS = 0.5;
 /// Beside a recording: where the rover truly was at every observation.
 std::filesystem::path truth_of(const std::filesystem::path& recording);
 
-/// Drives a trajectory (world frame) on true poses.
-void record_drive(const sim::World& world, const std::string& world_name,
-                  const planning::Trajectory& trajectory, const sim::Scenario& scenario,
-                  std::uint64_t seed, const app::RovigoConfig& config,
-                  const std::filesystem::path& recording);
+/// Drives a route on true poses.
+void record_drive(const sim::World& world, const std::string& world_name, const sim::Route& route,
+                  const sim::Scenario& scenario, std::uint64_t seed,
+                  const app::RovigoConfig& config, const std::filesystem::path& recording);
+
+/// Drives a route on true poses, mapping on the way.
+maps::SavedMap map_drive(const sim::World& world, const std::string& world_name,
+                         const sim::Route& route, std::uint64_t seed,
+                         const app::RovigoConfig& config);
 
 /// Puts the rover down at `world_from_base` and turns it in place for `duration_s`.
 void record_turn(const sim::World& world, const std::string& world_name,

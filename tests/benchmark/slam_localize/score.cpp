@@ -82,6 +82,7 @@ Run localize(const MappedWorld& world, const app::RovigoConfig& config,
     a.health = estimate.health;
     a.confidence = estimate.confidence;
     a.sigma_position_m = estimate.sigma_position_m;
+    a.evidence = localizer.evidence();
     judge(a, estimate.map_from_base,
           maps::compose(map_from_world, TPose2D(at(truth, time_s).asTPose())));
     run.answers.push_back(a);

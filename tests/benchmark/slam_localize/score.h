@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mapped_world.h"
+#include "slam/localizer_evidence.h"
 #include "slam/pose_estimate.h"
 
 namespace rovigo::slam_localize {
@@ -23,6 +24,7 @@ struct Answer {
   double sigma_position_m = 0.0;
   double error_m = 0.0;
   double error_rad = 0.0;
+  std::optional<slam::LocalizerEvidence> evidence;
   bool right() const { return error_m <= kWrongBeyondM && error_rad <= kWrongBeyondRad; }
   bool ok() const { return health == slam::Health::kOk; }
   bool confidently_wrong() const { return ok() && !right(); }

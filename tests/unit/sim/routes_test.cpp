@@ -10,6 +10,7 @@
 #include "sim/route.h"
 #include "sim/simulator.h"
 #include "sim/world.h"
+#include "sim/world_model.h"
 
 namespace rovigo::sim {
 namespace {
@@ -59,8 +60,53 @@ TEST_P(ShippedRoute, KeepsItsDistanceFromEveryObstacle) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedRoute,
-                         testing::Values("lab_tour", "lab_short", "corridor_out_and_back"),
+                         testing::Values("lab_tour", "lab_short", "office_loop", "lab_turns",
+                                         "corridor_out_and_back"),
                          [](const auto& test) { return test.param; });
+
+TEST(Route, MayTurnInPlaceAtWaypointsAndBeDrivenInLaps) {
+  const Route route = parse_route(
+      "waypoints: [[0, 0], {at: [1, 0], turn_deg: 360}, {at: [1, 2], turn_deg: -90}, [0, 0]]\n"
+      "turn_rate_rad_s: 2.0\nlaps: 3\n",
+      "r.yaml");
+  ASSERT_EQ(route.waypoints.size(), 4U);
+  ASSERT_EQ(route.turns.size(), 2U);
+  EXPECT_EQ(route.turns[0].waypoint, 1U);
+  EXPECT_NEAR(route.turns[0].turn_rad, 2.0 * maps::kPi, 1e-12);
+  EXPECT_NEAR(route.turns[1].turn_rad, -0.5 * maps::kPi, 1e-12);
+  EXPECT_EQ(route.turn_rate_rad_s, 2.0);
+  EXPECT_EQ(route.laps, 3);
+  EXPECT_NEAR(route.start_yaw_rad.value(), 0.0, 1e-12);
+}
+
+TEST(Route, TheOfficeLoopIsThirtyMetresLongAndComesHome) {
+  const Route route = load_route(kSim + "routes/office_loop.yaml");
+  double length = 0.0;
+  for (std::size_t i = 1; i < route.waypoints.size(); ++i) {
+    length += maps::distance(route.waypoints[i - 1], route.waypoints[i]);
+  }
+  EXPECT_NEAR(length, 30.0, 1.5);
+  EXPECT_LT(maps::distance(route.waypoints.front(), route.waypoints.back()), 0.05);
+}
+
+TEST(CorridorWorld, HasNothingButPlainSurfacesForTwentyMetres) {
+  const World world = World::load(kSim + "worlds/corridor.sdf");
+  int walls = 0;
+  for (const auto& solid : world.model().solids) {
+    double low = 1e9;
+    double high = -1e9;
+    for (const auto& p : corners_of(solid)) {
+      low = std::min(low, p.x());
+      high = std::max(high, p.x());
+    }
+    // Between the two door frames; what spans it all is wall, floor or ceiling.
+    if (high < 5.2 || low > 24.8) continue;
+    EXPECT_EQ(solid.material.pattern, Pattern::kPlain) << solid.name;
+    EXPECT_TRUE(low < 5.2 && high > 24.8) << solid.name << " breaks the corridor's monotony";
+    walls += solid.name.find("corridor_wall") != std::string::npos;
+  }
+  EXPECT_EQ(walls, 2);
+}
 
 TEST(Route, AnUnknownKeyIsRefusedWithItsLineAndTheNearestValidKey) {
   try {
@@ -76,8 +122,13 @@ TEST(Route, BadWaypointsAreRefused) {
   for (const char* text :
        {"", "waypoints: 3", "waypoints: [[0, 0]]", "waypoints: [[0, 0], [1]]",
         "waypoints: [[0, 0], [1, nan]]", "waypoints: [[0, 0], [1, x]]",
-        "waypoints: [[0, 0], [1e9, 0]]", "waypoints: [[0, 0], [1, 0]]\nspeed_m_s: 9", "[1, 2]",
-        "waypoints: [[0, 0", "waypoints: [[0, 0], [1, 0]]\nwaypoints: [[0, 0], [1, 0]]"}) {
+        "waypoints: [[0, 0], [1e9, 0]]", "waypoints: [[0, 0], {turn_deg: 90}]",
+        "waypoints: [[0, 0], {at: [1, 0], turn_deg: nan}]",
+        "waypoints: [[0, 0], {at: [1, 0], turn_deg: 1e9}]",
+        "waypoints: [[0, 0], {at: [1, 0], turns: 1}]", "waypoints: [[0, 0], [1, 0]]\nlaps: 0",
+        "waypoints: [[0, 0], [1, 0]]\nturn_rate_rad_s: 2.5",
+        "waypoints: [[0, 0], [1, 0]]\nspeed_m_s: 9", "[1, 2]", "waypoints: [[0, 0",
+        "waypoints: [[0, 0], [1, 0]]\nwaypoints: [[0, 0], [1, 0]]"}) {
     EXPECT_THROW(parse_route(text, "r.yaml"), maps::InputError) << text;
   }
 }

@@ -1,0 +1,48 @@
+#include "slam/localizer_evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "maps/geometry.h"
+
+namespace rovigo::slam {
+
+namespace {
+
+constexpr double kRightM = 0.20, kRightRad = 10.0 * maps::kPi / 180.0;
+constexpr double kMostFrames = 30.0;  // more of them add nothing: they share their errors
+constexpr double kMostRecognitions = 6.0;
+
+// constant, log inliers, matched share, depth share, scan share, log frames, recognitions, rival
+constexpr std::array<double, kConfidenceFeatures> kWeights = {-9.0, 0.8, 1.0, 4.0,
+                                                              3.0,  1.2, 0.8, -5.0};
+
+}  // namespace
+
+double chance_within_limits(double sigma_position_m, double sigma_heading_rad) {
+  // Two equal axes: the distance follows Rayleigh's distribution.
+  const double axis = std::max(1e-4, sigma_position_m / std::sqrt(2.0));
+  const double position = 1.0 - std::exp(-0.5 * std::pow(kRightM / axis, 2));
+  const double heading = std::erf(kRightRad / (std::sqrt(2.0) * std::max(1e-5, sigma_heading_rad)));
+  return position * heading;
+}
+
+std::array<double, kConfidenceFeatures> confidence_features(const LocalizerEvidence& e) {
+  return {1.0,
+          std::log1p(std::max(0, e.inliers)),
+          std::clamp(e.matched_share, 0.0, 1.0),
+          std::clamp(e.depth_share, 0.0, 1.0),
+          std::clamp(e.scan_share, 0.0, 1.0),
+          std::log1p(std::clamp<double>(e.agreeing_frames, 0.0, kMostFrames)),
+          std::log1p(std::clamp(e.recognitions, 0.0, kMostRecognitions)),
+          std::clamp(e.rival_share, 0.0, 1.0)};
+}
+
+double confidence_of(const LocalizerEvidence& e) {
+  const auto x = confidence_features(e);
+  const double sum = std::inner_product(x.begin(), x.end(), kWeights.begin(), 0.0);
+  return chance_within_limits(e.sigma_position_m, e.sigma_heading_rad) / (1.0 + std::exp(-sum));
+}
+
+}  // namespace rovigo::slam
