@@ -78,6 +78,11 @@ MotionCalibration InertialFilter::calibration() const {
   return {state_.gyro_bias.z(), state_.speed_scale, state_.turn_scale};
 }
 
+TTwist2D InertialFilter::twist() const {
+  const double turn_scale = gyro_rate_ ? 0.0 : state_.turn_scale;
+  return {state_.body_velocity().x(), 0.0, state_.rate.z() * (1.0 + turn_scale)};
+}
+
 Eigen::Matrix3d InertialFilter::pose_covariance() const {
   return state_.covariance(kInPlane, kInPlane);
 }
@@ -112,14 +117,16 @@ void InertialFilter::propagate(double dt) {
     raw_gyro_turn_rad_ += gyro_rate_->z() * dt;
   }
   const bool wheels = odometry_ && time_s_ - odometry_time_s_ < kWheelTimeoutS;
-  const StepNoise rolling = noise_of({.begin_s = 0.0,
-                                      .end_s = dt,
-                                      .distance_m = state_.velocity.x() * dt,
-                                      .turn_rad = state_.rate.z() * dt,
-                                      .has_gyro = gyro_rate_.has_value(),
-                                      .slipping = slipping(),
-                                      .standing = standing_},
-                                     config_);
+  MotionStep step{.begin_s = 0.0,
+                  .end_s = dt,
+                  .distance_m = state_.body_velocity().x() * dt,
+                  .turn_rad = state_.rate.z() * dt,
+                  .has_gyro = gyro_rate_.has_value(),
+                  .slipping = false,
+                  .standing = standing_};
+  const StepNoise rolling = noise_of(step, config_);
+  step.slipping = slipping();
+  const double slip_m2 = noise_of(step, config_).along_m2 - rolling.along_m2;
   state_.propagate(dt, {.turning_rad_s2 = kTurningRadS2,
                         .jerk_m_s3 = kJerkMS3,
                         .gyro_walk_rad_s2 = config_.gyro_bias_walk_rad_s2,
@@ -127,9 +134,12 @@ void InertialFilter::propagate(double dt) {
                         .odometer_m2 = rolling.along_m2,
                         .wheel_turn_rad2 = gyro_rate_ ? 0.0 : rolling.heading_rad2,
                         .creep_m2 = rolling.across_m2,
+                        .slip_m2 = slip_m2,
+                        .turn_by_wheels = !gyro_rate_,
                         .still = standing_,
                         .speed_fades = !wheels,
-                        .turn_fades = !gyro_rate_});
+                        .turn_fades = !gyro_rate_ && !wheels,
+                        .tilting_fades = !gyro_rate_});
 }
 
 void InertialFilter::add_gyro(double time_s, const Eigen::Vector3d& rate_rad_s) {
@@ -146,7 +156,7 @@ void InertialFilter::add_gyro(double time_s, const Eigen::Vector3d& rate_rad_s) 
   gyro_rate_ = rate_rad_s;
   gyro_time_s_ = time_s;
   const double variance = squared(config_.gyro_sigma_rad_s);
-  bool surprised = false;
+  const double half_s = 0.5 * std::clamp(since, 0.0, kGyroTimeoutS);
   for (int i = 0; i < 3; ++i) {
     const double innovation = rate_rad_s(i) - state_.rate(i) - state_.gyro_bias(i);
     const std::array<Term, 2> terms = {{{S::kRate + i, 1.0}, {S::kGyroBias + i, 1.0}}};
@@ -156,10 +166,8 @@ void InertialFilter::add_gyro(double time_s, const Eigen::Vector3d& rate_rad_s) 
     if (squared(innovation) < limit * expected) continue;
     if (standing_ && i != 2) continue;
     standing_ = false;
-    state_.covariance(S::kRate + i, S::kRate + i) += squared(innovation);
-    surprised = true;
+    state_.add_doubt(S::kRate + i, squared(innovation), half_s);
   }
-  if (surprised) state_.spread_doubt(0.5 * std::clamp(since, 0.0, kGyroTimeoutS));
   for (int i = 0; i < 3; ++i) {
     const std::array<Term, 2> terms = {{{S::kRate + i, 1.0}, {S::kGyroBias + i, 1.0}}};
     state_.update(terms, rate_rad_s(i) - state_.rate(i) - state_.gyro_bias(i), variance);
@@ -172,28 +180,24 @@ void InertialFilter::add_accelerometer(double time_s, const Eigen::Vector3d& for
   advance_to(time_s);
   accelerometer_time_s_ = time_s;
   const auto others = [&]() -> Eigen::Vector3d {
-    return state_.rate.cross(state_.velocity) +
+    return state_.rate.cross(state_.body_velocity()) +
            kGravity * state_.map_from_base.rotation.row(2).transpose() + state_.accelerometer_bias;
   };
   if (since > 0 && since < kGyroTimeoutS) felt_speed_m_s_ += (force - others()).x() * since;
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d up = state_.map_from_base.rotation.row(2);
     const Eigen::Matrix3d by_attitude = kGravity * skew(up);
-    const Eigen::Matrix3d by_velocity = skew(state_.rate), by_rate = -skew(state_.velocity);
-    std::array<Term, 11> terms;
-    terms[0] = {S::kAcceleration + i, 1.0};
-    terms[1] = {S::kAccelerometerBias + i, 1.0};
-    for (int j = 0; j < 3; ++j) {
-      const auto k = static_cast<std::size_t>(3 * j);
-      terms[k + 2] = {S::kAttitude + j, by_attitude(i, j)};
-      terms[k + 3] = {S::kVelocity + j, by_velocity(i, j)};
-      terms[k + 4] = {S::kRate + j, by_rate(i, j)};
-    }
-    const double innovation = force(i) - others()(i) - state_.acceleration(i);
+    // Rate and velocity are taken as known: a body that leans in its bends must not teach them.
+    const std::array<Term, 5> terms = {{{S::kAcceleration + i, 1.0},
+                                        {S::kAccelerometerBias + i, 1.0},
+                                        {S::kAttitude, by_attitude(i, 0)},
+                                        {S::kAttitude + 1, by_attitude(i, 1)},
+                                        {S::kAttitude + 2, by_attitude(i, 2)}}};
+    const double innovation = force(i) - others()(i) - state_.body_acceleration()(i);
     const double variance = squared(kAccelerometerSigmaMS2);
     // A jolt is real, but says nothing about biases and tilt.
     if (squared(innovation) > kSurprise * state_.innovation_variance(terms, variance)) {
-      state_.covariance(S::kAcceleration + i, S::kAcceleration + i) += squared(innovation);
+      state_.add_doubt(S::kAcceleration + i, squared(innovation), 0.0);
     }
     state_.update(terms, innovation, variance);
   }
@@ -293,15 +297,15 @@ double InertialFilter::judge_both_slipping(const WheelStep& wheels, double gripp
   const double force_variance = state_.innovation_variance(forwards, squared(kFeltSigmaMS2));
   const double sigma = config_.wheel_speed_sigma_m_s + kFeltMemoryS * std::sqrt(force_variance);
   const bool slipped = both_slip_;
-  both_slip_ = !standing_ && std::abs(apart) > std::max(kMinSlipMS, config_.slip_gate * sigma);
+  both_slip_ = !standing_ && !one_slips_ &&
+               std::abs(apart) > std::max(kMinSlipMS, config_.slip_gate * sigma);
   const double memory = both_slip_ ? kFeltMemorySlippingS : kFeltMemoryS;
   felt_speed_m_s_ += std::min(1.0, wheels.dt / memory) * apart;
   if (!both_slip_) return gripped_m;
   if (!slipped) {  // the wheels have misled the speed for a moment already
-    state_.covariance(S::kVelocity, S::kVelocity) += squared(apart);
-    state_.spread_doubt(kSlipMemoryS);
+    state_.add_doubt(S::kVelocity, squared(apart), kSlipMemoryS);
     const std::array<Term, 1> speed = {{{S::kVelocity, 1.0}}};
-    state_.update(speed, felt_speed_m_s_ - state_.velocity.x(), squared(sigma));
+    state_.update(speed, felt_speed_m_s_ / scale - state_.velocity.x(), squared(sigma));
   }
   return felt_speed_m_s_ * wheels.dt / scale;
 }
@@ -325,11 +329,10 @@ bool InertialFilter::looks_standing(const WheelStep& wheels) {
 
 /// The motion began somewhere in the interval that was taken for rest.
 void InertialFilter::leave_standing(const WheelStep& wheels) {
-  auto& p = state_.covariance;
-  p(S::kVelocity, S::kVelocity) += squared(2.0 * wheels.distance_m / wheels.dt);
-  p(S::kRate + 2, S::kRate + 2) += squared(wheels.turn_rad / wheels.dt);
-  p(S::kAcceleration, S::kAcceleration) += squared(kStartSigmaMS2);
-  state_.spread_doubt(0.5 * wheels.dt);
+  const double half_s = 0.5 * wheels.dt;
+  state_.add_doubt(S::kVelocity, squared(2.0 * wheels.distance_m / wheels.dt), half_s);
+  state_.add_doubt(S::kRate + 2, squared(wheels.turn_rad / wheels.dt), half_s);
+  state_.add_doubt(S::kAcceleration, squared(kStartSigmaMS2), 0.0);
 }
 
 void InertialFilter::hold_still() {
@@ -379,8 +382,7 @@ void InertialFilter::measure_odometer(int counter, int speed, double innovation,
   const double variance = squared(counter == S::kOdometer ? kCountSigmaM : kCountSigmaRad);
   const std::array<Term, 1> count = {{{counter, 1.0}}};
   if (squared(innovation) > kSurprise * state_.innovation_variance(count, variance)) {
-    state_.covariance(speed, speed) += squared(innovation / dt);
-    state_.spread_doubt(0.5 * dt);
+    state_.add_doubt(speed, squared(innovation / dt), 0.5 * dt);
   }
   state_.update(count, innovation, variance);
 }

@@ -49,7 +49,7 @@ class InertialFilter {
   Eigen::Matrix3d pose_covariance() const;
   const InertialState& state() const { return state_; }
   double time_s() const { return time_s_; }
-  TTwist2D twist() const { return {state_.velocity.x(), 0.0, state_.rate.z()}; }
+  TTwist2D twist() const;
   bool slipping() const { return one_slips_ || both_slip_; }
   bool standing() const { return standing_; }
   /// Turned by something other than its wheels: somebody has carried it, until it is found again.

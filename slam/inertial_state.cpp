@@ -13,26 +13,31 @@ constexpr double kBlindSpeedMS = 0.3, kBlindRateRadS = 0.5;
 
 }  // namespace
 
-void InertialState::derivatives(double dt, MovingMatrix& f, MovingByFixed& g) const {
+void InertialState::derivatives(double dt, bool turn_by_wheels, MovingMatrix& f,
+                                MovingByFixed& g) const {
   const Eigen::Matrix3d& r = map_from_base.rotation;
   const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
   const double fade = std::exp(-dt / kAccelerationFadeS);
   f.setIdentity();
   g.setZero();
-  f.block<3, 3>(kPosition, kAttitude) = -r * skew(velocity) * dt;
+  f.block<3, 3>(kPosition, kAttitude) = -r * skew(body_velocity()) * dt;
   f.block<3, 3>(kPosition, kVelocity) = r * dt;
-  f.block<3, 3>(kPosition, kRate) = -0.5 * dt * dt * r * skew(velocity);
+  f.block<3, 3>(kPosition, kRate) = -0.5 * dt * dt * r * skew(body_velocity());
   f.block<3, 3>(kPosition, kAcceleration) = 0.5 * dt * dt * r;
   f.block<3, 3>(kAttitude, kAttitude) = so3_exp(-rate * dt);
   f.block<3, 3>(kAttitude, kRate) = dt * identity;
   f.block<3, 3>(kVelocity, kAcceleration) = kAccelerationFadeS * (1.0 - fade) * identity;
   f.block<3, 3>(kAcceleration, kAcceleration) = fade * identity;
-  const double per_speed = 1.0 / (1.0 + speed_scale), per_turn = 1.0 / (1.0 + turn_scale);
-  f(kOdometer, kVelocity) = dt * per_speed;
-  f(kOdometer, kAcceleration) = 0.5 * dt * dt * per_speed;
-  f(kWheelTurn, kRate + 2) = dt * per_turn;
-  g(kOdometer, kSpeedScale - kMoving) = -velocity.x() * dt * per_speed * per_speed;
-  g(kWheelTurn, kTurnScale - kMoving) = -rate.z() * dt * per_turn * per_turn;
+  f.col(kVelocity).head<3>() *= 1.0 + speed_scale;
+  f.col(kAcceleration).head<3>() *= 1.0 + speed_scale;
+  g.col(kSpeedScale - kMoving).head<3>() = r.col(0) * velocity.x() * dt;
+  if (turn_by_wheels) {
+    f(kAttitude + 2, kRate + 2) *= 1.0 + turn_scale;
+    g(kAttitude + 2, kTurnScale - kMoving) = rate.z() * dt;
+  }
+  f(kOdometer, kVelocity) = dt;
+  f(kOdometer, kAcceleration) = 0.5 * dt * dt;
+  f(kWheelTurn, kRate + 2) = dt;
 }
 
 /// P = [F G; 0 I] P [F G; 0 I]': the biases and scales stay where they are.
@@ -72,46 +77,54 @@ void InertialState::add_noise(double dt, const InertialNoise& noise) {
   add(kOdometer, kOdometer, noise.odometer_m2);
   add(kWheelTurn, kWheelTurn, noise.wheel_turn_rad2);
   const Eigen::Vector3d across = map_from_base.rotation.col(1);
+  const Eigen::Vector3d along = map_from_base.rotation.col(0);
+  covariance.topLeftCorner<3, 3>() += noise.slip_m2 * along * along.transpose();
   covariance.topLeftCorner<3, 3>() += noise.creep_m2 * across * across.transpose();
 }
 
 void InertialState::propagate(double dt, const InertialNoise& noise) {
   MovingMatrix f;
   MovingByFixed g;
-  derivatives(dt, f, g);
+  derivatives(dt, noise.turn_by_wheels, f, g);
   const double fade = std::exp(-dt / kBlindFadeS);
-  const auto revert = [&](int index, Eigen::Vector3d& value, double spread) {
-    f.block<3, 3>(index, index) *= fade;
+  const auto revert = [&](int index, double& value, double spread) {
+    f.col(index) *= fade;
     value *= fade;
-    covariance.diagonal().segment<3>(index).array() += (1 - fade * fade) * spread * spread;
+    covariance(index, index) += (1.0 / (fade * fade) - 1.0) * spread * spread;
   };
-  if (noise.speed_fades) revert(kVelocity, velocity, kBlindSpeedMS);
-  if (noise.turn_fades) revert(kRate, rate, kBlindRateRadS);
+  for (int i = 0; i < 3; ++i) {
+    if (noise.speed_fades) revert(kVelocity + i, velocity(i), kBlindSpeedMS);
+    if (i < 2 ? noise.tilting_fades : noise.turn_fades) {
+      revert(kRate + i, rate(i), kBlindRateRadS);
+    }
+  }
   propagate_covariance(f, g);
   add_noise(dt, noise);
 
   const double held = std::exp(-dt / kAccelerationFadeS);
-  const Eigen::Vector3d mean_velocity = velocity + 0.5 * dt * acceleration;
-  map_from_base.translation +=
-      map_from_base.rotation * so3_exp(0.5 * dt * rate) * mean_velocity * dt;
-  map_from_base.rotation = map_from_base.rotation * so3_exp(rate * dt);
-  odometer_m += mean_velocity.x() * dt / (1.0 + speed_scale);
-  wheel_turn_rad += rate.z() * dt / (1.0 + turn_scale);
+  const Eigen::Vector3d mean = velocity + 0.5 * dt * acceleration;
+  Eigen::Vector3d turn = rate * dt;
+  if (noise.turn_by_wheels) turn.z() *= 1.0 + turn_scale;
+  map_from_base.translation += map_from_base.rotation * so3_exp(0.5 * turn) * scaled(mean) * dt;
+  map_from_base.rotation = map_from_base.rotation * so3_exp(turn);
+  odometer_m += mean.x() * dt;
+  wheel_turn_rad += rate.z() * dt;
   velocity += kAccelerationFadeS * (1.0 - held) * acceleration;
   acceleration *= held;
 }
 
-void InertialState::spread_doubt(double dt) {
-  MovingMatrix f;
-  MovingByFixed g;
-  derivatives(dt, f, g);
-  // Only the integrals of velocity and rate: nothing else has happened in the meantime.
-  f.block<3, 3>(kPosition, kAttitude).setZero();
-  f.block<3, 3>(kAttitude, kAttitude).setIdentity();
-  f.block<3, 3>(kVelocity, kAcceleration).setZero();
-  f.block<3, 3>(kAcceleration, kAcceleration).setIdentity();
-  g.setZero();
-  propagate_covariance(f, g);
+void InertialState::add_doubt(int index, double variance, double ago_s) {
+  Vector effect = Vector::Zero();
+  effect(index) = 1.0;
+  if (index >= kVelocity && index < kVelocity + 3) {
+    effect.segment<3>(kPosition) = ago_s * map_from_base.rotation.col(index - kVelocity);
+    if (index == kVelocity) effect(kOdometer) = ago_s;
+  } else if (index >= kRate && index < kRate + 3) {
+    effect(kAttitude + index - kRate) = ago_s;
+    if (index == kRate + 2) effect(kWheelTurn) = ago_s;
+  }
+  effect *= std::sqrt(variance);
+  covariance.noalias() += effect * effect.transpose();
 }
 
 double InertialState::innovation_variance(std::span<const Term> terms, double variance) const {
@@ -130,8 +143,12 @@ void InertialState::update(std::span<const Term> terms, double innovation, doubl
   for (const Term& t : terms) s += t.derivative * column(t.index);
   if (!(s > 0) || !std::isfinite(innovation)) return;
   const Vector gain = column / std::sqrt(s);  // twice the root: the product stays symmetric
-  inject(gain * (innovation / std::sqrt(s)));
+  Vector error = gain * (innovation / std::sqrt(s));
+  error.tail<2>().setZero();
+  inject(error);
+  const Eigen::Matrix2d scales = covariance.bottomRightCorner<2, 2>();
   covariance.noalias() -= gain * gain.transpose();
+  covariance.bottomRightCorner<2, 2>() = scales;
 }
 
 void InertialState::inject(const Vector& error) {

@@ -19,9 +19,12 @@ struct InertialNoise {
   double odometer_m2 = 0.0;         ///< variance that the step adds to the wheels' distance
   double wheel_turn_rad2 = 0.0;     ///< likewise to the wheels' turn
   double creep_m2 = 0.0;            ///< likewise to the position, across the heading
+  double slip_m2 = 0.0;             ///< likewise along the heading, unseen by the wheels
+  bool turn_by_wheels = false;      ///< no gyro: the rate about the vertical is the wheels'
   bool still = false;               ///< body at rest: only the biases walk
   bool speed_fades = false;         ///< nothing measures the speed: it reverts to rest
-  bool turn_fades = false;          ///< nothing measures the turn rate: likewise
+  bool turn_fades = false;          ///< nothing measures the turn rate about the vertical: likewise
+  bool tilting_fades = false;       ///< or about the other axes
 };
 
 /// Position (map), attitude, velocity, angular rate and acceleration (body; the derivative of the
@@ -50,6 +53,8 @@ class InertialState {
   };
 
   Se3 map_from_base;
+  /// Forwards in the wheels' own measure, as the acceleration: a change of speed then says nothing
+  /// of their scale. Likewise the rate about the vertical where there is no gyro.
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
   Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();
@@ -59,11 +64,14 @@ class InertialState {
   double speed_scale = 0.0, turn_scale = 0.0;
   Matrix covariance = Matrix::Zero();
 
+  Eigen::Vector3d body_velocity() const { return scaled(velocity); }
+  Eigen::Vector3d body_acceleration() const { return scaled(acceleration); }
+
   /// Carries the state on by `dt` seconds (short: first order in the error).
   void propagate(double dt, const InertialNoise& noise);
-  /// Lets doubt of velocity and angular rate that came up just now spread over the last `dt`
-  /// seconds, as if it had been there.
-  void spread_doubt(double dt);
+  /// Doubt of a velocity, rate or acceleration that came up `ago_s` seconds ago, and what it has
+  /// done since to pose and wheel counts. It has nothing to do with biases and scales.
+  void add_doubt(int index, double variance, double ago_s);
 
   /// Part of a measurement's derivative.
   struct Term {
@@ -71,7 +79,9 @@ class InertialState {
     double derivative = 0.0;
   };
   double innovation_variance(std::span<const Term> terms, double variance) const;
-  /// One scalar measurement: `innovation` is measured minus predicted.
+  /// One scalar measurement of a sensor on board: `innovation` is measured minus predicted. The
+  /// wheels' scales are considered, not taught (Schmidt 1966): only looks at the world show them,
+  /// and a mere change of speed would bend them.
   void update(std::span<const Term> terms, double innovation, double variance);
   void inject(const Vector& error);
 
@@ -82,7 +92,11 @@ class InertialState {
   using MovingMatrix = Eigen::Matrix<double, kMoving, kMoving>;
   using MovingByFixed = Eigen::Matrix<double, kMoving, kSize - kMoving>;
   void propagate_covariance(const MovingMatrix& by_moving, const MovingByFixed& by_fixed);
-  void derivatives(double dt, MovingMatrix& by_moving, MovingByFixed& by_fixed) const;
+  Eigen::Vector3d scaled(const Eigen::Vector3d& v) const {
+    return {v.x() * (1.0 + speed_scale), v.y(), v.z()};
+  }
+  void derivatives(double dt, bool turn_by_wheels, MovingMatrix& by_moving,
+                   MovingByFixed& by_fixed) const;
   void add_noise(double dt, const InertialNoise& noise);
 };
 

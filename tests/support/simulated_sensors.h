@@ -11,7 +11,7 @@
 namespace rovigo::slam::test {
 
 /// Stated noise is what the sensors have; slip and scales are shares.
-struct SimulatedSensors {
+struct SensorFaults {
   double speed_scale = 1.0;  ///< wheels report the true speed divided by this
   double turn_scale = 1.0;
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();
@@ -21,6 +21,13 @@ struct SimulatedSensors {
   double gyro_sigma_rad_s = 0.003, accelerometer_sigma_m_s2 = 0.02;
   double wheel_sigma_m = 0.0;  ///< per square root of a second of motion: rubber and bumps
   double tick_m = 0.0;         ///< of the encoders; 0: exact
+};
+
+class SimulatedSensors : public SensorFaults {
+ public:
+  SimulatedSensors() = default;
+  explicit SimulatedSensors(const SensorFaults& faults) : SensorFaults(faults) {}
+
   std::mt19937_64 random{7};
 
   TPose2D truth{}, odom{};

@@ -1,74 +1,27 @@
-#include "slam/dead_reckoning.h"
+#include "slam/inertial_filter.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
+
+#include "tests/support/simulated_sensors.h"
 
 namespace rovigo::slam {
 namespace {
 
-/// A rover with imperfect sensors on a known path.
-struct Drive {
-  double speed_scale = 1.0;  // wheels report the true speed divided by this
-  double turn_scale = 1.0;
-  double gyro_bias = 0.0;
-  bool gyro = true;
-  std::mt19937_64 random{7};
+using test::look_at;
+using test::SimulatedSensors;
 
-  TPose2D truth{};
-  TPose2D odom{};
-  double time_s = 10.0;
-
-  /// Runs `seconds` at a speed and turn rate; wheels at 50 Hz, gyro at 100 Hz.
-  void run(DeadReckoning& filter, double seconds, double speed, double turn,
-           double slip_left = 0.0) {
-    std::normal_distribution<double> noise(0.0, 0.003);
-    const int steps = static_cast<int>(std::lround(seconds * 100));
-    for (int i = 0; i < steps; ++i) {
-      const double dt = 0.01;
-      time_s += dt;
-      truth = maps::compose(truth, {speed * dt * std::cos(0.5 * turn * dt),
-                                    speed * dt * std::sin(0.5 * turn * dt), turn * dt});
-      // A slipping left wheel turns faster than its side moves.
-      const double left = (speed - turn * 0.179) * (1.0 + slip_left);
-      const double right = speed + turn * 0.179;
-      const double wheel_speed = 0.5 * (left + right) / speed_scale;
-      const double wheel_turn = (right - left) / 0.358 / turn_scale;
-      odom = maps::compose(odom,
-                           {wheel_speed * dt * std::cos(0.5 * wheel_turn * dt),
-                            wheel_speed * dt * std::sin(0.5 * wheel_turn * dt), wheel_turn * dt});
-      if (gyro) filter.add_gyro(time_s, turn + gyro_bias + noise(random));
-      if (i % 2 == 1) filter.add_wheels(time_s, odom);
-    }
-  }
-
-  double position_error(const DeadReckoning& filter) const {
-    return maps::distance(maps::position_of(filter.map_from_base()), maps::position_of(truth));
-  }
-  double heading_error(const DeadReckoning& filter) const {
-    return std::abs(maps::wrap_angle(filter.map_from_base().phi - truth.phi));
-  }
-};
-
-DeadReckoning started() {
-  DeadReckoning filter{DeadReckoningConfig{}};
+InertialFilter started() {
+  InertialFilter filter{DeadReckoningConfig{}};
   filter.place({0, 0, 0}, 0.0, 0.0);
   return filter;
 }
 
-/// A look at the truth, as good as `sigma`s say.
-PlanarInformation look_at(const TPose2D& truth, double sigma_m, double sigma_rad) {
-  PlanarInformation look;
-  look.map_from_base = truth;
-  look.information.diagonal() << 1 / (sigma_m * sigma_m), 1 / (sigma_m * sigma_m),
-      1 / (sigma_rad * sigma_rad);
-  return look;
-}
-
-TEST(DeadReckoning, PerfectSensorsFollowASquare) {
-  DeadReckoning filter = started();
-  Drive drive;
+TEST(InertialFilter, PerfectSensorsFollowASquare) {
+  InertialFilter filter = started();
+  SimulatedSensors drive;
+  drive.run(filter, 1.0, 0.0, 0.0);
   for (int side = 0; side < 4; ++side) {
     drive.run(filter, 5.0, 0.4, 0.0);
     drive.run(filter, 2.0, 0.0, 1.5707963267948966 / 2.0);
@@ -77,52 +30,131 @@ TEST(DeadReckoning, PerfectSensorsFollowASquare) {
   EXPECT_LT(drive.heading_error(filter), 0.01);
 }
 
-TEST(DeadReckoning, StandingStillTeachesTheGyrosBias) {
-  DeadReckoning filter = started();
-  Drive drive{.gyro_bias = 0.01};
+TEST(InertialFilter, StandingStillTeachesTheGyrosBias) {
+  InertialFilter filter = started();
+  SimulatedSensors drive({.gyro_bias = {0, 0, 0.01}});
   drive.run(filter, 3.0, 0.0, 0.0);
-  EXPECT_NEAR(filter.state()(DeadReckoning::kGyroBias), 0.01, 0.001);
+  EXPECT_NEAR(filter.state().gyro_bias.z(), 0.01, 0.001);
   EXPECT_LT(drive.heading_error(filter), 1e-3);
 }
 
-TEST(DeadReckoning, LooksTeachTheWheelsScale) {
-  DeadReckoning filter = started();
-  Drive drive{.speed_scale = 1.03};
+TEST(InertialFilter, LooksTeachTheWheelsScale) {
+  InertialFilter filter = started();
+  SimulatedSensors drive({.speed_scale = 1.03});
   for (int i = 0; i < 100; ++i) {
     drive.run(filter, 0.2, 0.4, 0.1);
     filter.correct(look_at(drive.truth, 0.01, 0.01), 0.0, 0.0);
   }
-  EXPECT_NEAR(filter.state()(DeadReckoning::kSpeedScale), 0.03, 0.006);
+  EXPECT_NEAR(filter.state().speed_scale, 0.03, 0.006);
   drive.run(filter, 10.0, 0.4, 0.0);  // 4 m without a look
   EXPECT_LT(drive.position_error(filter), 0.05);
 }
 
-TEST(DeadReckoning, LooksTeachTheTurnScaleWithoutAGyro) {
-  DeadReckoning filter = started();
-  Drive drive{.turn_scale = 0.95, .gyro = false};
+TEST(InertialFilter, LooksTeachTheTurnScaleWithoutAGyro) {
+  InertialFilter filter = started();
+  SimulatedSensors drive({.turn_scale = 0.95, .gyro = false, .accelerometer = false});
   for (int i = 0; i < 100; ++i) {
     drive.run(filter, 0.2, 0.3, 0.5);
     filter.correct(look_at(drive.truth, 0.005, 0.003), 0.0, 0.0);
   }
-  EXPECT_NEAR(filter.state()(DeadReckoning::kTurnScale), -0.05, 0.01);
+  EXPECT_NEAR(filter.state().turn_scale, -0.05, 0.01);
 }
 
-TEST(DeadReckoning, ASlippingWheelIsNoticedAndTheOtherFollowed) {
-  DeadReckoning filter = started();
-  Drive drive;
+TEST(InertialFilter, ASlippingWheelIsNoticedAndTheOtherFollowed) {
+  InertialFilter filter = started();
+  SimulatedSensors drive;
   drive.run(filter, 2.0, 0.4, 0.0);
   const double before = drive.position_error(filter);
-  drive.run(filter, 0.8, 0.4, 0.0, 0.5);
+  drive.slip_left = 0.5;
+  drive.run(filter, 0.8, 0.4, 0.0);
   EXPECT_TRUE(filter.slipping());
   // Unnoticed, the mean of both wheels would claim 25% of 0.32 m too much.
   EXPECT_LT(drive.position_error(filter) - before, 0.035);
+  drive.slip_left = 0.0;
   drive.run(filter, 1.0, 0.4, 0.0);
   EXPECT_FALSE(filter.slipping());
 }
 
-TEST(DeadReckoning, UncertaintyGrowsWithoutLooksAndShrinksWithThem) {
-  DeadReckoning filter = started();
-  Drive drive;
+TEST(InertialFilter, BothSidesSpinningAreNoticedByTheAccelerometer) {
+  InertialFilter filter = started();
+  SimulatedSensors drive;
+  drive.run(filter, 2.0, 0.0, 0.0);  // rest shows what the accelerometer reads wrongly
+  drive.run(filter, 2.0, 0.3, 0.0);
+  EXPECT_FALSE(filter.slipping());
+  const double before = drive.position_error(filter);
+  drive.slip_left = drive.slip_right = 1.0;
+  drive.run(filter, 0.6, 0.3, 0.0);
+  EXPECT_TRUE(filter.slipping());
+  // Unnoticed, the wheels would claim another 0.18 m.
+  EXPECT_LT(drive.position_error(filter) - before, 0.06);
+  drive.slip_left = drive.slip_right = 0.0;
+  drive.run(filter, 1.0, 0.3, 0.0);
+  EXPECT_FALSE(filter.slipping());
+}
+
+TEST(InertialFilter, BlockedWheelsOfASlidingRoverAreNotBelieved) {
+  InertialFilter filter = started();
+  SimulatedSensors drive;
+  drive.run(filter, 2.0, 0.0, 0.0);
+  drive.run(filter, 2.0, 0.5, 0.0);
+  drive.slip_left = drive.slip_right = -1.0;
+  drive.run(filter, 0.15, 0.5, 0.0);
+  EXPECT_TRUE(filter.slipping());
+  EXPECT_NEAR(filter.twist().vx, 0.5, 0.1);
+}
+
+TEST(InertialFilter, WheelsAloneStillDeadReckon) {
+  InertialFilter filter = started();
+  SimulatedSensors drive({.gyro = false, .accelerometer = false, .tick_m = 4.5e-4});
+  for (int side = 0; side < 4; ++side) {
+    drive.run(filter, 5.0, 0.4, 0.0);
+    drive.run(filter, 2.0, 0.0, 1.5707963267948966 / 2.0);
+  }
+  // What encoders count adds up: no error of a tick is ever added twice.
+  EXPECT_LT(drive.position_error(filter), 0.03);
+  EXPECT_LT(drive.heading_error(filter), 0.01);
+}
+
+TEST(InertialFilter, WithoutWheelsLooksTeachTheSpeed) {
+  InertialFilter filter = started();
+  SimulatedSensors drive({.wheels = false});
+  for (int i = 0; i < 60; ++i) {
+    drive.run(filter, 0.07, 0.4, 0.2);
+    filter.correct(look_at(drive.truth, 0.002, 0.002), 0.0, 0.0);
+  }
+  EXPECT_NEAR(filter.twist().vx, 0.4, 0.05);
+  EXPECT_NEAR(filter.twist().omega, 0.2, 0.02);
+}
+
+TEST(InertialFilter, RestTeachesTheAccelerometersBias) {
+  InertialFilter filter = started();
+  SimulatedSensors drive({.accelerometer_bias = {0.0, 0.0, 0.1}});
+  drive.run(filter, 5.0, 0.0, 0.0);
+  EXPECT_NEAR(filter.state().accelerometer_bias.z(), 0.1, 0.02);
+}
+
+TEST(InertialFilter, SilentWheelsLeaveThePoseMoreAndMoreUncertain) {
+  InertialFilter filter = started();
+  SimulatedSensors drive;
+  drive.run(filter, 3.0, 0.3, 0.0);
+  const double before = filter.pose_covariance()(0, 0);
+  filter.advance_to(drive.time_s + 5.0);
+  EXPECT_GT(filter.pose_covariance()(0, 0), before + 0.05);
+  EXPECT_TRUE(filter.state().covariance.allFinite());
+}
+
+TEST(InertialFilter, TurningOnRestingWheelsIsBeingCarried) {
+  InertialFilter filter = started();
+  SimulatedSensors drive;
+  drive.run(filter, 2.0, 0.0, 0.0);
+  drive.slip_left = drive.slip_right = -1.0;  // the wheels hang in the air
+  drive.run(filter, 1.0, 0.0, 0.6);
+  EXPECT_TRUE(filter.carried());
+}
+
+TEST(InertialFilter, UncertaintyGrowsWithoutLooksAndShrinksWithThem) {
+  InertialFilter filter = started();
+  SimulatedSensors drive;
   drive.run(filter, 5.0, 0.4, 0.0);
   const double after_5s = filter.pose_covariance().trace();
   drive.run(filter, 5.0, 0.4, 0.0);
@@ -133,8 +165,8 @@ TEST(DeadReckoning, UncertaintyGrowsWithoutLooksAndShrinksWithThem) {
   EXPECT_LT(filter.pose_covariance().trace(), 0.2 * after_10s);
 }
 
-TEST(DeadReckoning, ALookThatConstrainsOneDirectionLeavesTheOtherAlone) {
-  DeadReckoning filter = started();
+TEST(InertialFilter, ALookThatConstrainsOneDirectionLeavesTheOtherAlone) {
+  InertialFilter filter = started();
   filter.place({0, 0, 0}, 0.1, 0.05);
   PlanarInformation corridor;  // sees the walls beside it, nothing along it
   corridor.map_from_base = {3.0, 0.05, 0.0};
@@ -145,18 +177,21 @@ TEST(DeadReckoning, ALookThatConstrainsOneDirectionLeavesTheOtherAlone) {
   EXPECT_NEAR(filter.pose_covariance()(0, 0), 0.01, 1e-9);
 }
 
-TEST(DeadReckoning, NonFiniteReadingsChangeNothing) {
-  DeadReckoning filter = started();
-  Drive drive;
+TEST(InertialFilter, NonFiniteReadingsChangeNothing) {
+  InertialFilter filter = started();
+  SimulatedSensors drive;
   drive.run(filter, 1.0, 0.4, 0.0);
-  const auto before = filter.state();
-  filter.add_gyro(drive.time_s, std::nan(""));
+  const auto before = filter.state().covariance;
+  const TPose2D pose = filter.map_from_base();
+  filter.add_gyro(drive.time_s, {0, 0, std::nan("")});
+  filter.add_accelerometer(drive.time_s, {0, std::nan(""), 9.81});
   filter.add_wheels(drive.time_s, {std::nan(""), 0, 0});
-  EXPECT_EQ(filter.state(), before);
+  EXPECT_EQ(filter.state().covariance, before);
+  EXPECT_EQ(filter.map_from_base(), pose);
 }
 
-TEST(DeadReckoning, ShiftingTheMapMovesThePoseWithIt) {
-  DeadReckoning filter = started();
+TEST(InertialFilter, ShiftingTheMapMovesThePoseWithIt) {
+  InertialFilter filter = started();
   filter.place({1, 0, 0}, 0.01, 0.01);
   filter.shift({0, 2, 1.5707963267948966});
   EXPECT_NEAR(filter.map_from_base().x, 0.0, 1e-9);
