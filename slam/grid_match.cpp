@@ -1,11 +1,11 @@
 #include "slam/grid_match.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "maps/distance_field.h"
+#include "slam/planar_fit.h"
 
 namespace rovigo::slam {
 
@@ -35,17 +35,9 @@ std::vector<float> signed_meters(const maps::OccupancyGrid& grid) {
   return out;
 }
 
-/// The scan's cost at one pose, quadratic around it.
-struct Linearized {
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  int points = 0;
-  int inliers = 0;
-};
-
-Linearized linearize(const SignedDistanceField& field, const std::vector<ScanPoint>& scan,
+PlanarCost linearize(const SignedDistanceField& field, const std::vector<ScanPoint>& scan,
                      const TPose2D& pose) {
-  Linearized out;
+  PlanarCost out;
   for (const ScanPoint& p : scan) {
     const TPoint2D map_point = maps::transform(pose, p.base_point);
     const auto sample = field.at(map_point);
@@ -141,26 +133,13 @@ std::vector<ScanPoint> obstacle_points(const cv::Mat& depth, double unit_m,
 
 GridMatch match_scan(const SignedDistanceField& field, const std::vector<ScanPoint>& scan,
                      const TPose2D& prior, const Eigen::Matrix3d& prior_covariance) {
-  // A covariance this small would pin the pose; a nanometre keeps it invertible.
-  const Eigen::Matrix3d prior_information =
-      (prior_covariance + 1e-9 * Eigen::Matrix3d::Identity()).inverse();
-  TPose2D pose = prior;
-  Linearized cost = linearize(field, scan, pose);
-  for (int i = 0; i < kIterations; ++i) {
-    const Eigen::Vector3d away(pose.x - prior.x, pose.y - prior.y,
-                               maps::wrap_angle(pose.phi - prior.phi));
-    const Eigen::Vector3d step = (cost.information + prior_information)
-                                     .ldlt()
-                                     .solve(-(cost.gradient + prior_information * away));
-    if (!step.allFinite()) break;
-    pose = {pose.x + step.x(), pose.y + step.y(), maps::wrap_angle(pose.phi + step.z())};
-    cost = linearize(field, scan, pose);
-    if (step.norm() < 1e-5) break;
-  }
+  const PlanarFit fit = fit_planar(prior, prior_covariance, kIterations, [&](const TPose2D& pose) {
+    return linearize(field, scan, pose);
+  });
   GridMatch match;
-  match.look = {pose, cost.information, cost.gradient};
-  match.points = cost.points;
-  match.inlier_share = cost.points > 0 ? static_cast<double>(cost.inliers) / cost.points : 0.0;
+  match.look = fit.look;
+  match.points = fit.points;
+  match.inlier_share = fit.inlier_share();
   return match;
 }
 

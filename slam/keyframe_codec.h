@@ -31,7 +31,7 @@ std::vector<StoredFeature> decode_features(const maps::Blob& blob);
 
 maps::Blob encode_color(const cv::Mat& color);
 /// 16-bit PNG, 1 mm a unit, of every second pixel in both directions: clouds and grids made from
-/// it lose nothing that shows, and a map file is a third as large.
+/// it lose nothing that shows, and map files are less than half as large.
 maps::Blob encode_depth(const CameraFrame& frame);
 /// Brought back to `size` by repeating pixels. Throws InputError when the blob is not a 16-bit
 /// image.

@@ -20,7 +20,8 @@ struct Keyframe {
   std::vector<int> landmark_of;  ///< per feature; -1: none
   maps::Blob color_jpeg;
   maps::Blob depth_png;
-  WallScan walls;  ///< empty unless on a floor
+  WallScan walls;                         ///< empty unless on a floor
+  double sigma_m = 0.0, sigma_rad = 0.0;  ///< against the map's first keyframe, along the chain
 };
 
 struct Sighting {

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kBlockS = 60.0;
 constexpr double kKernel = 3.0;  // sigmas: slip that nobody noticed loses its vote
-constexpr double kFloorM = 0.001, kFloorRad = 0.0005;
+constexpr double kFloorM = 0.001, kFloorRad = 0.0005;  // no link is better than this
+constexpr double kFloorHeightM = 0.005, kFloorTiltRad = 0.005;
 // How far calibrations may move from block to block.
 constexpr double kBiasStepRadS = 1e-3, kScaleStep = 2e-3;
 
@@ -42,6 +43,10 @@ struct LinkError {
         between(1) - (T(link.from_from_to.y) + by(1)), atan2(sin(yaw_error), cos(yaw_error));
     Eigen::Map<Eigen::Matrix<T, 3, 1>> out(residual);
     out = weight.cast<T>() * error;
+    // Both ends stand on one floor; without this nothing would hold a blind keyframe down.
+    residual[3] = between(2) / T(kFloorHeightM);
+    residual[4] = turn(2, 0) / T(kFloorTiltRad);
+    residual[5] = turn(2, 1) / T(kFloorTiltRad);
     return true;
   }
 
@@ -92,7 +97,7 @@ void LinkErrors::add_to(ceres::Problem& problem, const std::vector<Se3>& poses,
                         const StepOf& step_of) {
   for (const MotionLink& l : links_) {
     const auto from = static_cast<std::size_t>(l.from), to = static_cast<std::size_t>(l.to);
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<LinkError, 3, 6, 6, 3>(
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<LinkError, 6, 6, 6, 3>(
                                  new LinkError(l, poses[from], poses[to])),
                              &kernel_, step_of(l.from), step_of(l.to),
                              calibrations_[block_of(l)].data());

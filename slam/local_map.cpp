@@ -82,7 +82,7 @@ bool wants_keyframe(const LandmarkMap& map, const LocalMap& local, const TrackRe
                                         [](const Feature& f) { return f.depth_m > 0; });
   const double known = static_cast<double>(result.matches.size());
   const bool poor = known < config.keyframe_min_overlap * 0.5 * static_cast<double>(with_depth);
-  return nearest > 1.0 || (poor && nearest > 0.5);
+  return nearest > 1.0 || (poor && nearest > 0.3);
 }
 
 }  // namespace rovigo::slam

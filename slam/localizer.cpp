@@ -32,11 +32,15 @@ constexpr double kLostAfterS = 0.6;       // of contradiction
 constexpr double kReconfirmAfterS = 0.5;  // blind for longer, the rover may be anywhere
 constexpr double kFrameGaps = 2.5;        // usual intervals without a frame: the camera fell silent
 constexpr int kMinTelling = 15, kSureTelling = 20;  // matches that tell one place from another
-constexpr double kSureScanShare = 0.75, kSureDepthShare = 0.8, kSureMatched = 0.2;  // to become OK
+constexpr double kSureScanShare = 0.5, kSureDepthShare = 0.8, kSureMatched = 0.2;  // to become OK
 constexpr double kMostRival = 0.2,
                  kMostRivalTracking = 0.35;  // share of the votes that another place may have
-constexpr double kStillScanShare = 0.6, kStillMatched = 0.15;
+constexpr double kStillScanShare = 0.5, kStillMatched = 0.15;
+// Odometry says it cannot be elsewhere; only somebody who carried it can have brought it there.
+constexpr int kFramesAfterLoss = 22;
+constexpr double kDoubtfulShare = 0.3;  // of the confidence that is left while a frame contradicts
 constexpr double kSureRecognitions = 1.2;  // of the whole map: two clear views or more
+constexpr double kSureRecognition = 0.9;   // where views cannot be added up
 constexpr double kFullWeightInliers = 40.0;
 // A view this near a mapped one has to match it; elsewhere the map knows nothing to contradict.
 constexpr double kSameViewM = 0.7;
@@ -113,9 +117,10 @@ struct Localizer::Impl {
   PlaceVotes votes;
   LocalizerEvidence evidence;
   int frames = 0;
-  int misses = 0;         ///< frames in a row that matched nothing
-  bool was_sure = false;  ///< of this place, before the camera was blind
-  bool doubt = false;     ///< the newest frame shows plenty and does not fit
+  int misses = 0;           ///< frames in a row that matched nothing
+  bool moved_away = false;  ///< a place was sure and then lost: the next one is an odd one
+  bool was_sure = false;    ///< of this place, before the camera was blind
+  bool doubt = false;       ///< the newest frame shows plenty and does not fit
   std::optional<double> contradicted_since_s;
   double last_fix_s = -1e9;
   double last_frame_s = -1e9;
@@ -133,6 +138,7 @@ void Localizer::Impl::begin(double time_s) {
 
 void Localizer::Impl::lose() {
   state = State::kSearching;
+  if (was_sure) moved_away = true;
   was_sure = false;
   evidence = {};
   misses = 0;
@@ -302,13 +308,16 @@ void Localizer::Impl::miss(const View& view, const std::vector<int>& local_landm
 /// Enough frames agree, and the whole map has no better place for what they show.
 bool Localizer::Impl::is_convincing() const {
   if (evidence.agreeing_frames < config.localizer.confirmation_frames) return false;
-  if (was_sure) {  // and was blind for a moment: the prediction speaks for the place, too
+  // Blind for a moment only, or told where to look: that speaks for the place, too.
+  if (was_sure || prior) {
     return evidence.scan_share >= kStillScanShare && evidence.matched_share >= kStillMatched &&
            evidence.rival_share <= kMostRivalTracking;
   }
+  if (moved_away && evidence.agreeing_frames < kFramesAfterLoss) return false;
+  const double sure_recognitions = motion.planar() ? kSureRecognitions : kSureRecognition;
   return evidence.scan_share >= kSureScanShare && evidence.depth_share >= kSureDepthShare &&
          evidence.matched_share >= kSureMatched && evidence.inliers >= kSureTelling &&
-         evidence.recognitions >= kSureRecognitions && evidence.rival_share <= kMostRival &&
+         evidence.recognitions >= sure_recognitions && evidence.rival_share <= kMostRival &&
          confidence_of(evidence) >= kOkConfidence;
 }
 
@@ -324,6 +333,7 @@ void Localizer::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan) {
                                 map.base_from_camera(), config);
   }
   votes.fade();
+  if (!motion.planar()) votes.clear();  // without odometry only one view's votes can be compared
   if (state != State::kSearching) follow(view);
   const bool spot_check = frames % kSpotCheckEvery == 0;
   if (state == State::kSearching) {
@@ -341,6 +351,7 @@ void Localizer::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan) {
   if (state == State::kConfirming && is_convincing()) {
     state = State::kTracking;
     was_sure = true;
+    moved_away = false;
     prior.reset();  // it has done its work; from here on the map decides
   }
 }
@@ -357,7 +368,7 @@ PoseEstimate Localizer::Impl::estimate(double time_s) {
   evidence.sigma_position_m = now.sigma_position_m;
   evidence.sigma_heading_rad = now.sigma_heading_rad;
   evidence.unseen_s = time_s - last_fix_s;
-  e.confidence = confidence_of(evidence);
+  e.confidence = (doubt ? kDoubtfulShare : 1.0) * confidence_of(evidence);
   const bool fresh =
       !doubt && !camera_is_silent(time_s) && evidence.unseen_s <= config.localizer.degraded_after_s;
   const bool sure = state == State::kTracking && evidence.rival_share <= kMostRivalTracking &&

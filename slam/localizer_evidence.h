@@ -23,9 +23,9 @@ struct LocalizerEvidence {
 inline constexpr double kOkConfidence = 0.95;
 
 /// The chance that the pose is within 0.20 m and 10 deg: logistic in the evidence, times the chance
-/// that dead reckoning since the last look stayed within them. The weights were fitted by
-/// tests/benchmark/slam_localize (see fit_confidence.py there) on other worlds and starts than
-/// those the published curve is measured on.
+/// that dead reckoning since the last look stayed within them. The weights are set by hand; the
+/// tests/benchmark/slam_localize program prints how far they are from calibrated, and
+/// fit_confidence.py there fits them to its dumps.
 double confidence_of(const LocalizerEvidence& evidence);
 
 /// The chance that a Gaussian error stays within what makes a pose right (0.20 m, 10 deg).

@@ -41,15 +41,27 @@ constexpr int kSearchWhenLostEvery = 2;
 constexpr int kFewInliers = 120;  // fewer leave the heading to noise: walls are asked too
 constexpr int kMinWallPoints = 30;
 constexpr double kMinWallShare = 0.7;   // of the points that must lie on the walls
+constexpr double kWallStep = 1.0;       // a step beyond this is no correction
 constexpr int kWallKeyframes = 5;       // whose walls are looked at together
 constexpr double kBlindSpacing = 1.25;  // of keyframes in places that show nothing
 constexpr double kFoundSigmaM = 0.05;   // of a pose found by recognising the place
 constexpr double kFoundSigmaRad = 0.03;
 constexpr double kSurprisingM = 0.15;
 constexpr int kFinalIterations = 8;
+// What one step from keyframe to keyframe adds to the uncertainty, at rest and by its length.
+constexpr double kHopM = 0.002, kHopShare = 0.004;
+constexpr double kHopRad = 0.001, kHopRadShare = 0.002;
+constexpr double kFrameIsLateS = 0.3;  // without one, nothing can be called tracked
 
 bool is_convincing(const WallMatch& match) {
   return match.points >= kMinWallPoints && match.inlier_share >= kMinWallShare;
+}
+
+/// How far a match leads away from the prior, in units of 5 cm and 30 mrad.
+double step_of(const WallMatch& match, const TPose2D& prior) {
+  const TPose2D& at = match.look.map_from_base;
+  return std::hypot(at.x - prior.x, at.y - prior.y) / 0.05 +
+         std::abs(maps::wrap_angle(at.phi - prior.phi)) / 0.03;
 }
 
 /// What walls alone say: the match was held by the prior where they are silent.
@@ -96,6 +108,7 @@ struct Slam::Impl {
   void remember_tracked(const TrackResult& result);
   bool frame_joins_map(const TrackResult& result, const FeatureSet& features,
                        const Se3& pose) const;
+  void spread_uncertainty(const Keyframe& parent, Keyframe& child, TrackStatus status);
   void insert_keyframe(const CameraFrame& frame, FeatureSet features, const TrackResult& result,
                        const Se3& pose);
   std::vector<MotionLink> links() const;
@@ -119,6 +132,7 @@ struct Slam::Impl {
   std::vector<int> tracked_landmarks;
   SlamSummary counters;
   bool begun = false;
+  double last_frame_s = 0.0;
   int anchor = -1;  ///< keyframe that poses are held against: last seen, or made
   int misses = 0;   ///< frames in a row that matched nothing
 
@@ -181,7 +195,7 @@ void Slam::Impl::recover(double time_s, const FeatureSet& features, TrackResult&
   const double apart = (believed.prior.map_from_base.translation - seen.translation).norm();
   if (apart > kSurprisingM + 4.0 * believed.sigma_position_m) {
     // A look-alike, unless something has shown that the prediction is worth nothing.
-    if (!lost && believed.sigma_position_m < kWorthlessSigmaM) return;
+    if (motion.planar() && !lost && believed.sigma_position_m < kWorthlessSigmaM) return;
     move_to(time_s, seen, believed.prior.map_from_base, keyframe);
   }
   result.status = TrackStatus::kTracked;
@@ -200,7 +214,12 @@ void Slam::Impl::move_to(double time_s, const Se3& seen, const Se3& believed, in
 
 /// The landmarks that should be in view against the depth image; features need not be asked.
 ViewVerdict Slam::Impl::verdict_on(const CameraFrame& frame, const Se3& pose) const {
-  const DepthAgreement view = depth_agreement(map, local.landmarks, frame, pose, motion.planar());
+  // What one keyframe alone has seen may have walked away since.
+  std::vector<int> lasting;
+  for (const int l : local.landmarks) {
+    if (map.landmark(l).sightings.size() >= 2) lasting.push_back(l);
+  }
+  const DepthAgreement view = depth_agreement(map, lasting, frame, pose, motion.planar());
   if (view.judged() + view.hidden < kTellingLandmarks) return ViewVerdict::kSilent;
   if (view.hidden > view.judged()) return ViewVerdict::kHidden;
   return view.share() < kAgreeingShare ? ViewVerdict::kContradicts : ViewVerdict::kAgrees;
@@ -236,7 +255,9 @@ Se3 Slam::Impl::follow_walls(const CameraFrame& frame, const Se3& pose) {
   walls = wall_scan(frame, camera, base_from_camera, config);
   const WallMatch match = match_walls(placed_walls(last_keyframes()), walls, to_planar(pose),
                                       motion.dead_reckoning().pose_covariance());
-  return is_convincing(match) ? motion.correct(match.look) : pose;
+  // A person's flank is no wall: it asks for a step that wheels and gyro do not believe.
+  const bool plausible = is_convincing(match) && step_of(match, to_planar(pose)) < kWallStep;
+  return plausible ? motion.correct(match.look) : pose;
 }
 
 /// The keyframe at hand and those before it that may show the same walls.
@@ -260,7 +281,7 @@ void Slam::Impl::link_walls(int keyframe, const std::vector<int>& earlier) {
   for (const int k : earlier) {
     const WallMatch match = match_walls(placed_walls({k}), now.walls, to_planar(now.map_from_base),
                                         motion.dead_reckoning().pose_covariance());
-    if (!is_convincing(match)) continue;
+    if (!is_convincing(match) || step_of(match, to_planar(now.map_from_base)) > kWallStep) continue;
     MotionLink link = link_of(match, to_planar(map.keyframe(k).map_from_base));
     link.from = k;
     link.to = keyframe;
@@ -290,6 +311,18 @@ bool Slam::Impl::frame_joins_map(const TrackResult& result, const FeatureSet& fe
   return spacing > kBlindSpacing;
 }
 
+/// A keyframe is known against the map's first one as well as its parent, and a little worse.
+void Slam::Impl::spread_uncertainty(const Keyframe& parent, Keyframe& child, TrackStatus status) {
+  const Se3 step = parent.map_from_base.inverse() * child.map_from_base;
+  const double distance = step.translation.norm(), turn = so3_log(step.rotation).norm();
+  const MotionPrediction now = motion.predict(child.time_s);
+  const bool blind = status != TrackStatus::kTracked;
+  const double hop_m = kHopM + kHopShare * distance + (blind ? now.sigma_position_m : 0.0);
+  const double hop_rad = kHopRad + kHopRadShare * turn + (blind ? now.sigma_heading_rad : 0.0);
+  child.sigma_m = std::hypot(parent.sigma_m, hop_m, parent.sigma_rad * distance);
+  child.sigma_rad = std::hypot(parent.sigma_rad, hop_rad);
+}
+
 void Slam::Impl::insert_keyframe(const CameraFrame& frame, FeatureSet features,
                                  const TrackResult& result, const Se3& pose) {
   Keyframe k;
@@ -306,6 +339,7 @@ void Slam::Impl::insert_keyframe(const CameraFrame& frame, FeatureSet features,
   if (motion.planar()) {
     k.walls = blind ? walls : wall_scan(frame, camera, base_from_camera, config);
   }
+  if (anchor >= 0) spread_uncertainty(map.keyframe(anchor), k, result.status);
   const std::vector<int> earlier = last_keyframes();
   const int id = map.add_keyframe(std::move(k));
   motion.mark_keyframe(id, frame.time_s);
@@ -335,6 +369,12 @@ void Slam::Impl::look_for_loop(double time_s) {
   const Se3 before = map.keyframe(newest).map_from_base;
   if (!close_loop(map, edges, links(), *loop)) return;
   ++counters.loop_closures;
+  const Keyframe& seen_before = map.keyframe(loop->edge.from);
+  Keyframe& now_known = map.keyframe(newest);
+  now_known.sigma_m =
+      std::min(now_known.sigma_m, std::hypot(seen_before.sigma_m, kFoundSigmaM / 5));
+  now_known.sigma_rad =
+      std::min(now_known.sigma_rad, std::hypot(seen_before.sigma_rad, kFoundSigmaRad / 5));
   motion.shift(map.keyframe(newest).map_from_base * before.inverse());
 }
 
@@ -342,8 +382,7 @@ void Slam::Impl::look_for_loop(double time_s) {
 void Slam::Impl::adjust_everything() {
   constexpr int kPasses = 2;  // the second without the sightings the first found wanting
   for (int pass = 0; pass < kPasses; ++pass) {
-    adjust_bundle(map, {}, motion.links(),
-                  {.iterations = kFinalIterations, .on_floor = motion.planar()});
+    adjust_bundle(map, {}, links(), {.iterations = kFinalIterations, .on_floor = motion.planar()});
   }
 }
 
@@ -354,11 +393,17 @@ PoseEstimate Slam::Impl::estimate(double time_s, const Se3& pose) {
   e.map_from_base = to_mrpt(pose);
   e.sigma_position_m = now.sigma_position_m;
   e.sigma_heading_rad = now.sigma_heading_rad;
+  if (anchor >= 0) {
+    // The filter knows the pose against the keyframe in view; that one is not known exactly either.
+    e.sigma_position_m = std::hypot(e.sigma_position_m, map.keyframe(anchor).sigma_m);
+    e.sigma_heading_rad = std::hypot(e.sigma_heading_rad, map.keyframe(anchor).sigma_rad);
+  }
+  const bool frames_come = time_s - last_frame_s < kFrameIsLateS;
   const bool bounded = now.sigma_position_m < config.localizer.lost_sigma_m;
   switch (health.state()) {
     case TrackingState::kTracking:
-      e.health = Health::kOk;
-      e.confidence = 0.95;
+      e.health = frames_come ? Health::kOk : bounded ? Health::kDegraded : Health::kLost;
+      e.confidence = frames_come ? 0.95 : bounded ? 0.6 : 0.0;
       break;
     case TrackingState::kReckoning:
     case TrackingState::kConfirming:
@@ -374,6 +419,7 @@ PoseEstimate Slam::Impl::estimate(double time_s, const Se3& pose) {
 
 PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan) {
   const CameraFrame frame = camera_frame_from(scan, camera);
+  last_frame_s = frame.time_s;
   const MotionPrediction prediction = motion.predict(frame.time_s);
   FeatureSet features;
   if (!frame.gray.empty())
@@ -397,13 +443,6 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
     pose = follow_walls(frame, pose);
   }
   const bool first = map.keyframes().empty();
-  fprintf(stderr,
-          "t %.1f feat %zu local %zu matches %zu inl %d tracked %d state %d sig %.3f pose %.2f "
-          "%.2f %.2f kf %zu cal %.5f %.4f\n",
-          frame.time_s, features.size(), local.landmarks.size(), result.matches.size(),
-          result.solution.inliers, tracked, (int)health.state(), prediction.sigma_position_m,
-          pose.translation.x(), pose.translation.y(), to_planar(pose).phi, map.keyframes().size(),
-          motion.dead_reckoning().calibration()(0), motion.dead_reckoning().calibration()(1));
   judge(frame, tracked, pose);
   if (!frame.gray.empty() && frame_joins_map(result, features, pose)) {
     insert_keyframe(frame, std::move(features), result, pose);
@@ -434,7 +473,9 @@ std::optional<PoseEstimate> Slam::process(const mrpt::obs::CObservation& observa
     s.motion.add(*wheels);
   }
   s.dead_reckon(time_s);
-  return std::nullopt;
+  const bool late = s.last_frame_s > 0.0 && time_s - s.last_frame_s >= kFrameIsLateS;
+  if (!late || !s.motion.planar()) return std::nullopt;
+  return s.estimate(time_s, s.motion.predict(time_s).prior.map_from_base);
 }
 
 maps::SavedMap Slam::finish() {

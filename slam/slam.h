@@ -30,6 +30,7 @@ class Slam {
   ~Slam();
 
   /// Takes one observation in. For a camera frame: the pose now, in the map frame as known so far.
+  /// A rover whose frames stay out gets its dead-reckoned pose, never called OK, for every reading.
   std::optional<PoseEstimate> process(const mrpt::obs::CObservation& observation);
 
   /// Optimises once more, renders the grid from the optimised poses and hands the map over

@@ -46,7 +46,7 @@ struct TrackingConfig {
   double plane_height_sigma_m = 0.006;  ///< a rover stays on the floor
   double plane_tilt_sigma_rad = 0.006;
   double keyframe_distance_m = 0.40;
-  double keyframe_angle_rad = 0.35;
+  double keyframe_angle_rad = 0.25;
   double keyframe_min_overlap = 0.55;  ///< share of the reference's landmarks still tracked
 
   void describe(maps::SettingsVisitor& v);

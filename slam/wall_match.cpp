@@ -1,10 +1,11 @@
 #include "slam/wall_match.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "slam/planar_fit.h"
 
 namespace rovigo::slam {
 
@@ -112,17 +113,9 @@ const MapPoint* nearest(const std::vector<MapPoint>& reference, const Eigen::Vec
   return best;
 }
 
-/// The walls' cost at one pose, quadratic around it.
-struct Linearized {
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  int points = 0;
-  int inliers = 0;
-};
-
 /// Noise in the normals makes parallel walls claim a little knowledge along them, always in favour
 /// of no motion. A direction that weak is left out (Zhang, Kaess & Singh 2016).
-void drop_weak_direction(Linearized& cost) {
+void drop_weak_direction(PlanarCost& cost) {
   const Eigen::Matrix2d translation = cost.information.topLeftCorner<2, 2>();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(translation);
   if (eigen.eigenvalues()(0) > kWeakShare * eigen.eigenvalues()(1)) return;
@@ -133,9 +126,9 @@ void drop_weak_direction(Linearized& cost) {
   cost.gradient = keep * cost.gradient;
 }
 
-Linearized linearize(const std::vector<MapPoint>& reference, const WallScan& scan,
+PlanarCost linearize(const std::vector<MapPoint>& reference, const WallScan& scan,
                      const TPose2D& pose) {
-  Linearized out;
+  PlanarCost out;
   const Eigen::Rotation2Dd turn(pose.phi);
   for (const WallPoint& p : scan) {
     if (p.normal.isZero()) continue;
@@ -178,25 +171,13 @@ WallScan wall_scan(const CameraFrame& frame, const CameraModel& camera, const Se
 WallMatch match_walls(const std::vector<PlacedWalls>& reference, const WallScan& scan,
                       const TPose2D& prior, const Eigen::Matrix3d& prior_covariance) {
   const std::vector<MapPoint> walls = in_map(reference);
-  const Eigen::Matrix3d prior_information =
-      (prior_covariance + 1e-9 * Eigen::Matrix3d::Identity()).inverse();
-  TPose2D pose = prior;
-  Linearized cost = linearize(walls, scan, pose);
-  for (int i = 0; i < kIterations; ++i) {
-    const Eigen::Vector3d away(pose.x - prior.x, pose.y - prior.y,
-                               maps::wrap_angle(pose.phi - prior.phi));
-    const Eigen::Vector3d step = (cost.information + prior_information)
-                                     .ldlt()
-                                     .solve(-(cost.gradient + prior_information * away));
-    if (!step.allFinite()) break;
-    pose = {pose.x + step.x(), pose.y + step.y(), maps::wrap_angle(pose.phi + step.z())};
-    cost = linearize(walls, scan, pose);
-    if (step.norm() < 1e-5) break;
-  }
+  const PlanarFit fit = fit_planar(prior, prior_covariance, kIterations, [&](const TPose2D& pose) {
+    return linearize(walls, scan, pose);
+  });
   WallMatch match;
-  match.look = {pose, cost.information, cost.gradient};
-  match.points = cost.points;
-  match.inlier_share = cost.points > 0 ? static_cast<double>(cost.inliers) / cost.points : 0.0;
+  match.look = fit.look;
+  match.points = fit.points;
+  match.inlier_share = fit.inlier_share();
   return match;
 }
 

@@ -161,6 +161,7 @@ TEST(PoseGraph, OneLoopTeachesTheWheelsScale) {
   const PoseGraphResult r = optimize_pose_graph(graph, DeadReckoningConfig{}, 30);
   ASSERT_TRUE(r.converged);
   EXPECT_GT(rmse(graph.poses, truth), 0.1);
+  for (const Se3& pose : r.poses) EXPECT_NEAR(pose.translation.z(), 0.0, 0.01);
   EXPECT_LT(rmse(r.poses, truth), 0.03);
 }
 

@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "tests/support/recordings.h"
 #include "slam/recording/depth_registration.h"
 #include "slam/recording/images.h"
 #include "slam/recording/rgbd_normalizer.h"
+#include "tests/support/recordings.h"
 
 namespace rovigo::slam {
 namespace {
