@@ -10,6 +10,7 @@
 #include "slam/camera_model.h"
 #include "slam/planar_information.h"
 #include "slam/se3.h"
+#include "slam/slam_config.h"
 
 namespace rovigo::slam {
 
