@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "slam/camera_frame.h"
+#include "slam/imu_reading.h"
 
 namespace rovigo::slam {
 
@@ -82,18 +83,18 @@ MotionModel::MotionModel(const SlamConfig& config, const Rig& rig)
       links_(config.dead_reckoning) {}
 
 void MotionModel::add(const mrpt::obs::CObservationIMU& imu) {
-  using namespace mrpt::obs;
-  if (!imu.has(IMU_WX) || !imu.has(IMU_WY) || !imu.has(IMU_WZ)) return;
-  const Eigen::Vector3d rate_sensor(imu.get(IMU_WX), imu.get(IMU_WY), imu.get(IMU_WZ));
-  const Eigen::Vector3d rate = from_mrpt(imu.sensorPose).rotation * rate_sensor;
-  if (!rate.allFinite()) return;
+  const ImuReading reading = imu_in_base(imu);
   const double time_s = time_of(imu);
   if (planar_) {
-    planar_filter_.add_gyro(time_s, rate.z());
+    if (reading.rate_rad_s) planar_filter_.add_gyro(time_s, *reading.rate_rad_s);
+    if (reading.specific_force_m_s2) {
+      planar_filter_.add_accelerometer(time_s, *reading.specific_force_m_s2);
+    }
     return;
   }
+  if (!reading.rate_rad_s) return;
   const double dt = has_gyro_ ? std::clamp(time_s - gyro_time_s_, 0.0, 0.1) : 0.0;
-  gyro_turn_ = gyro_turn_ * so3_exp(rate * dt);
+  gyro_turn_ = gyro_turn_ * so3_exp(*reading.rate_rad_s * dt);
   gyro_time_s_ = time_s;
   has_gyro_ = true;
 }
@@ -121,11 +122,11 @@ MotionPrediction MotionModel::predict(double time_s) {
   if (planar_) {
     planar_filter_.advance_to(time_s);
     const TPose2D pose = planar_filter_.map_from_base();
-    const Eigen::Matrix3d covariance = planar_filter_.pose_covariance();
+    out.covariance = planar_filter_.pose_covariance();
     out.prior.map_from_base = from_planar(pose);
-    out.prior.information = planar_prior_information(covariance, pose.phi, tracking_);
-    out.sigma_position_m = std::sqrt(std::max(0.0, covariance(0, 0) + covariance(1, 1)));
-    out.sigma_heading_rad = std::sqrt(std::max(0.0, covariance(2, 2)));
+    out.prior.information = planar_prior_information(out.covariance, pose.phi, tracking_);
+    out.sigma_position_m = std::sqrt(std::max(0.0, out.covariance(0, 0) + out.covariance(1, 1)));
+    out.sigma_heading_rad = std::sqrt(std::max(0.0, out.covariance(2, 2)));
     out.turn_rate_rad_s = std::abs(planar_filter_.twist().omega);
     return out;
   }
@@ -135,6 +136,8 @@ MotionPrediction MotionModel::predict(double time_s) {
   out.sigma_position_m = tracking_.free_motion_sigma_m + 0.5 * unseen_s_;
   out.sigma_heading_rad =
       has_gyro_ ? 0.02 + 0.05 * (dt + unseen_s_) : 0.02 + 0.5 * dt + 1.0 * unseen_s_;
+  out.covariance.diagonal() << Eigen::Vector2d::Constant(0.5 * std::pow(out.sigma_position_m, 2)),
+      std::pow(out.sigma_heading_rad, 2);
   out.prior.information.diagonal().head<3>().setConstant(1.0 / std::pow(out.sigma_position_m, 2));
   out.prior.information.diagonal().tail<3>().setConstant(1.0 / std::pow(out.sigma_heading_rad, 2));
   return out;
