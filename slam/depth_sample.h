@@ -22,7 +22,8 @@ DepthSample sample_depth(const cv::Mat& depth, double unit_m);
 std::vector<Eigen::Vector3f> lift(const DepthSample& sample, const CameraModel& camera);
 
 /// Surfaces that one view saw (`points_there`, in its camera's frame) against another view's depth.
-/// What lies outside that view, or has no return there, is not judged.
+/// What lies outside that view, or has no return there, is not judged. Only what is seen through
+/// contradicts: what is hidden may lie in another room.
 DepthAgreement compare(const std::vector<Eigen::Vector3f>& points_there, const Se3& here_from_there,
                        const DepthSample& here, const CameraModel& camera);
 

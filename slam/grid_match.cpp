@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "maps/distance_field.h"
 #include "slam/planar_fit.h"
@@ -16,6 +17,7 @@ constexpr double kCauchyScale = 2.0;  // in sigmas
 constexpr double kInlierSigmas = 3.0;
 constexpr int kIterations = 15;
 constexpr int kPixelStep = 4;
+constexpr double kUnseenShare = 0.8;
 constexpr double kNearWallM = 0.12;  // two cells, and a pose as good as appearance gives it
 // Neighbouring points share their errors (one wall, one cell row): count them as fewer.
 constexpr double kIndependentShare = 0.1;
@@ -93,6 +95,13 @@ SignedDistanceField::Sample SignedDistanceField::at(const TPoint2D& point) const
   return out;
 }
 
+SignedDistanceField::CellSample SignedDistanceField::cell_at(const TPoint2D& point) const {
+  const maps::Cell cell = geometry_.cell_at(point);
+  if (!geometry_.contains(cell)) return {false, std::numeric_limits<double>::infinity()};
+  const std::size_t index = geometry_.index_of(cell);
+  return {known_[index], std::max(0.0F, meters_[index])};
+}
+
 ScanAgreement scan_agreement(const SignedDistanceField& field, const std::vector<ScanPoint>& scan,
                              const TPose2D& map_from_base) {
   ScanAgreement out;
@@ -100,9 +109,9 @@ ScanAgreement scan_agreement(const SignedDistanceField& field, const std::vector
   if (scan.empty()) return out;
   double sum = 0.0;
   for (const ScanPoint& p : scan) {
-    const auto sample = field.at(maps::transform(map_from_base, p.base_point));
-    const bool near = std::abs(sample.meters) < kNearWallM + kInlierSigmas * p.sigma_m;
-    sum += !sample.known ? 0.5 : near ? 1.0 : 0.0;
+    const auto cell = field.cell_at(maps::transform(map_from_base, p.base_point));
+    const bool near = cell.wall_m < kNearWallM + kInlierSigmas * p.sigma_m;
+    sum += near ? 1.0 : cell.known ? 0.0 : kUnseenShare;
   }
   out.share = sum / static_cast<double>(scan.size());
   return out;

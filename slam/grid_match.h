@@ -34,6 +34,14 @@ class SignedDistanceField {
   /// Bilinear between cell centres.
   Sample at(const TPoint2D& point) const;
 
+  /// Of the cell the point lies in: metres to the nearest obstacle's edge (0 inside one, infinity
+  /// outside the grid), and whether it has been seen.
+  struct CellSample {
+    bool known = false;
+    double wall_m = 0.0;
+  };
+  CellSample cell_at(const TPoint2D& point) const;
+
  private:
   maps::GridGeometry geometry_;
   std::vector<float> meters_;
@@ -50,7 +58,7 @@ struct GridMatch {
 struct ScanAgreement {
   int points = 0;
   /// Of them, those near a boundary of free and occupied; what falls on ground nobody has seen
-  /// counts half. 1 without points.
+  /// counts for the most part: it neither confirms nor contradicts. 1 without points.
   double share = 1.0;
 };
 ScanAgreement scan_agreement(const SignedDistanceField& field, const std::vector<ScanPoint>& scan,

@@ -11,10 +11,11 @@
 #include "slam/grid_match.h"
 #include "slam/local_map.h"
 #include "slam/localizer_depth_check.h"
-#include "slam/localizer_votes.h"
 #include "slam/map_storage.h"
 #include "slam/motion_model.h"
+#include "slam/place_finder.h"
 #include "slam/relocalizer.h"
+#include "slam/view_continuity.h"
 
 namespace rovigo::slam {
 
@@ -27,27 +28,39 @@ constexpr int kPlenty = 150;         // features; fewer and the camera may be co
 constexpr int kTriesSearching = 4;   // places a frame, by geometry
 constexpr int kTriesConfirming = 2;
 constexpr int kSpotCheckEvery = 15;       // frames: does the whole map agree with what is tracked?
-constexpr int kForgetFixAfter = 3;        // unconfirmed frames
-constexpr double kLostAfterS = 0.6;       // of contradiction
+constexpr double kLostAfterS = 0.3;       // of contradiction, after the view has jumped,
+constexpr int kLostAfterMisses = 3;       // and so many frames
 constexpr double kReconfirmAfterS = 0.5;  // blind for longer, the rover may be anywhere
 constexpr double kFrameGaps = 2.5;        // usual intervals without a frame: the camera fell silent
 constexpr int kMinTelling = 15, kSureTelling = 20;  // matches that tell one place from another
-constexpr double kSureScanShare = 0.5, kSureDepthShare = 0.8, kSureMatched = 0.2;  // to become OK
+constexpr double kSureScanShare = 0.7, kSureDepthShare = 0.8;  // to become OK
+constexpr double kPlausibleScanShare =
+    0.75;                                // to be believed for a moment, with no view recognised
+constexpr double kHeldScanShare = 0.75;  // of one view, to hold a pose by it alone
+constexpr int kSureScanPoints = 60;
+constexpr double kLeastBelief = 0.5;  // in a place not yet confirmed, to call it more than LOST
+constexpr double kWorseThanRival = -0.05;
 constexpr double kMostRival = 0.2,
                  kMostRivalTracking = 0.35;  // share of the votes that another place may have
-constexpr double kStillScanShare = 0.5, kStillMatched = 0.15;
-// Odometry says it cannot be elsewhere; only somebody who carried it can have brought it there.
-constexpr int kFramesAfterLoss = 22;
+constexpr double kStillScanShare = 0.5;
 constexpr double kDoubtfulShare = 0.3;  // of the confidence that is left while a frame contradicts
-constexpr double kSureRecognitions = 1.2;  // of the whole map: two clear views or more
-constexpr double kSureRecognition = 0.9;   // where views cannot be added up
+constexpr double kSureRecognition = 0.9;  // where views cannot be added up
 constexpr double kFullWeightInliers = 40.0;
 // A view this near a mapped one has to match it; elsewhere the map knows nothing to contradict.
 constexpr double kSameViewM = 0.7;
 constexpr double kSameViewRad = 0.45;
 // What contradicts a pose: this much to judge by, and this little of it as the map has it.
-constexpr int kEnoughLandmarks = 20, kEnoughPoints = 40, kEnoughAtDepth = 60;
+constexpr int kEnoughLandmarks = 20, kEnoughAtDepth = 60;
+constexpr std::size_t kEnoughPoints = 40;
 constexpr double kLeastDepthShare = 0.6, kLeastScanShare = 0.5, kLeastMatchedShare = 0.08;
+
+/// One view against the map at one pose.
+struct ViewCheck {
+  double depth_share = 1.0;    ///< DepthAgreement::share(), with enough to judge
+  double scan_share = 1.0;     ///< of the depth scan, how much lies on the grid's walls
+  double matched_share = 0.0;  ///< of the landmarks at their depth, how many matched
+  bool contradicts = false;
+};
 
 }  // namespace
 
@@ -66,8 +79,9 @@ struct Localizer::Impl {
       : config(settings),
         map(restore_landmark_map(saved, settings)),
         motion(settings, r),
-        odometry(settings, r) {
-    if (motion.planar() && !saved.grid.cells.empty()) field.emplace(saved.grid);
+        odometry(settings, r),
+        continuity(map.camera(), map.base_from_camera()),
+        finder(saved, map.camera(), map.base_from_camera(), motion.planar()) {
     for (const Keyframe& k : map.keyframes()) relocalizer.add(map, k.id);
     repeated = relocalizer.repeated_landmarks(map);
     if (given) {
@@ -82,17 +96,20 @@ struct Localizer::Impl {
   void on_frame(const mrpt::obs::CObservation3DRangeScan& scan);
   void note_interval(double time_s);
   void look_everywhere(const View& view);
-  void search(const View& view);
-  void give_way();
-  void adopt(double time_s, const Relocalization& found);
+  void judge_places(const View& view, bool is_new);
+  void adopt(double time_s, const Se3& map_from_base);
+  bool hold_by_scan(const View& view, const std::vector<int>& local_landmarks);
   void follow(const View& view);
-  void take_in(const View& view, const TrackResult& result);
+  void take_in(const View& view, const TrackResult& result, const ViewCheck& seen);
+  void note_agreement(double time_s, int inliers, const ViewCheck& seen);
   void miss(const View& view, const std::vector<int>& local_landmarks,
             const MotionPrediction& prediction);
-  bool contradicts(const View& view, const std::vector<int>& landmarks, const Se3& pose,
-                   int inliers);
+  ViewCheck check(const View& view, const std::vector<int>& landmarks, const Se3& pose,
+                  int inliers) const;
   int telling(const std::vector<FeatureMatch>& matches) const;
-  void count_votes();
+  void weigh_support(double time_s);
+  Se3 odom_from_base(double time_s) { return odometry.predict(time_s).prior.map_from_base; }
+  Se3 believed(double time_s) { return motion.predict(time_s).prior.map_from_base; }
   bool is_convincing() const;
   void lose();
   bool map_knows_view(const Se3& map_from_base) const;
@@ -103,9 +120,10 @@ struct Localizer::Impl {
   LandmarkMap map;
   MotionModel motion;
   MotionModel odometry;  ///< never corrected: ties together what is seen while searching
+  ViewContinuity continuity;
+  PlaceFinder finder;
   Relocalizer relocalizer;
   std::vector<bool> repeated;  ///< by landmark: shows no particular place
-  std::optional<SignedDistanceField> field;
   std::optional<PoseRegion> prior;
   double prior_sigma_m = 0.0, prior_sigma_rad = 0.0;
 
@@ -113,14 +131,12 @@ struct Localizer::Impl {
   bool begun = false;
   bool has_pose = false;  ///< some pose to carry on from, right or not
   std::vector<int> tracked;
-  std::vector<Relocalization> found;  ///< in the newest frame that was compared with the whole map
-  PlaceVotes votes;
   LocalizerEvidence evidence;
   int frames = 0;
-  int misses = 0;           ///< frames in a row that matched nothing
-  bool moved_away = false;  ///< a place was sure and then lost: the next one is an odd one
-  bool was_sure = false;    ///< of this place, before the camera was blind
-  bool doubt = false;       ///< the newest frame shows plenty and does not fit
+  int misses = 0;         ///< frames in a row that matched nothing
+  bool broken = false;    ///< the view has jumped since a frame last agreed
+  bool was_sure = false;  ///< of this place, before the camera was blind
+  bool doubt = false;     ///< the newest frame shows plenty and does not fit
   std::optional<double> contradicted_since_s;
   double last_fix_s = -1e9;
   double last_frame_s = -1e9;
@@ -138,14 +154,13 @@ void Localizer::Impl::begin(double time_s) {
 
 void Localizer::Impl::lose() {
   state = State::kSearching;
-  if (was_sure) moved_away = true;
   was_sure = false;
   evidence = {};
   misses = 0;
   doubt = false;
   contradicted_since_s.reset();
   tracked.clear();
-  votes.clear();
+  finder.clear();
 }
 
 /// Whether somebody looked this way from here when the map was made.
@@ -168,58 +183,49 @@ bool Localizer::Impl::camera_is_silent(double time_s) const {
   return time_s - last_frame_s > kFrameGaps * frame_interval_s;
 }
 
-/// Compares the view with the whole map; what geometry accepts votes for where the rover is.
+/// Compares the view with the whole map; what geometry accepts speaks for a place.
 void Localizer::Impl::look_everywhere(const View& view) {
   const PlaceMatchConfig place{.min_inliers = config.localizer.relocalization_inliers,
                                .seed = static_cast<std::uint64_t>(frames)};
   const int tries = state == State::kSearching ? kTriesSearching : kTriesConfirming;
-  found = relocalizer.find_places(map, view.features, motion.planar(), prior, tries, place);
-  const Se3 odom_from_base = odometry.predict(view.frame.time_s).prior.map_from_base;
-  std::erase_if(found, [&](const Relocalization& r) {
-    const Se3& pose = r.match.solution.map_from_base;
-    return telling(r.match.matches) < kMinTelling ||
-           contradicts(view, map.landmarks_of({r.keyframe}), pose, r.match.solution.inliers);
-  });
+  const auto found =
+      relocalizer.find_places(map, view.features, motion.planar(), prior, tries, place);
   for (const Relocalization& r : found) {
-    const double weight = std::min(1.0, telling(r.match.matches) / kFullWeightInliers);
-    votes.add(view.frame.time_s, r.match.solution.map_from_base, odom_from_base, weight);
+    const PoseSolution& solution = r.match.solution;
+    const int clear = telling(r.match.matches);
+    if (clear < kMinTelling) continue;
+    const auto landmarks = map.landmarks_of({r.keyframe});
+    if (check(view, landmarks, solution.map_from_base, solution.inliers).contradicts) continue;
+    finder.recognize(solution.map_from_base, odom_from_base(view.frame.time_s),
+                     std::min(1.0, clear / kFullWeightInliers));
   }
 }
 
-void Localizer::Impl::count_votes() {
-  const Se3 odom_from_base = odometry.predict(last_frame_s).prior.map_from_base;
-  const auto split = votes.split(motion.predict(last_frame_s).prior.map_from_base, odom_from_base);
-  evidence.recognitions = split.here;
-  const double all = split.here + split.elsewhere;
-  evidence.rival_share = all > 0.0 ? split.elsewhere / all : 0.0;
-}
-
-/// Takes the place with the most votes for the rover's, if this very view voted for it.
-void Localizer::Impl::search(const View& view) {
-  look_everywhere(view);
-  const auto best = votes.best();
-  if (!best || found.empty()) return;
-  const Se3 believed =
-      best->map_from_odom * odometry.predict(view.frame.time_s).prior.map_from_base;
-  for (const Relocalization& r : found) {
-    const Se3& pose = r.match.solution.map_from_base;
-    if ((pose.translation - believed.translation).norm() > kSameViewM) continue;
-    adopt(view.frame.time_s, r);
-    return;
+/// Goes to the place that most speaks for, if it is not where the rover is believed to be.
+void Localizer::Impl::judge_places(const View& view, bool is_new) {
+  const double time_s = view.frame.time_s;
+  const Se3 odom = odom_from_base(time_s);
+  if (is_new) {
+    finder.search(odom, prior);
+  } else {
+    finder.judge(odom);
+  }
+  const auto best = finder.best();
+  if (!best || (best->recognitions == 0.0 && best->scan_share < kPlausibleScanShare)) return;
+  const Se3 place = best->map_from_odom * odom;
+  const bool there = state != State::kSearching &&
+                     (place.translation - believed(time_s).translation).norm() < kSameViewM;
+  if (there) return;
+  // Odometry says it cannot be elsewhere; only a jump of the view would explain it.
+  if (!was_sure) {
+    adopt(time_s, place);
+  } else if (broken) {
+    lose();
   }
 }
 
-/// Another place has more votes than the one believed: lost, until the next view votes too.
-void Localizer::Impl::give_way() {
-  const PlaceVotes kept = votes;
-  lose();
-  votes = kept;
-}
-
-void Localizer::Impl::adopt(double time_s, const Relocalization& place) {
-  const PoseSolution& solution = place.match.solution;
-  motion.place(time_s, solution.map_from_base, kFixSigmaM, kFixSigmaRad);
-  motion.correct(time_s, solution);
+void Localizer::Impl::adopt(double time_s, const Se3& map_from_base) {
+  motion.place(time_s, map_from_base, kFixSigmaM, kFixSigmaRad);
   has_pose = true;
   state = State::kConfirming;
   was_sure = false;
@@ -227,11 +233,19 @@ void Localizer::Impl::adopt(double time_s, const Relocalization& place) {
   doubt = false;
   contradicted_since_s.reset();
   evidence = {};
-  evidence.inliers = telling(place.match.matches);
   last_fix_s = time_s;
   tracked.clear();
-  for (const FeatureMatch& m : place.match.matches) tracked.push_back(m.landmark);
-  count_votes();
+}
+
+/// What speaks for the place believed, and for others.
+void Localizer::Impl::weigh_support(double time_s) {
+  const PlaceSupport support = finder.support(believed(time_s), odom_from_base(time_s));
+  evidence.recognitions = support.recognitions;
+  evidence.rival_share = support.rival_recognition_share();
+  evidence.scan_share = support.scan_share;
+  evidence.surface_share = support.surface_share;
+  evidence.shape_margin = support.shape - support.rival_shape;
+  evidence.scan_points = support.scan_points;
 }
 
 int Localizer::Impl::telling(const std::vector<FeatureMatch>& matches) const {
@@ -241,68 +255,94 @@ int Localizer::Impl::telling(const std::vector<FeatureMatch>& matches) const {
   }));
 }
 
-/// Whether what the view shows cannot be at `pose`: the map's landmarks are not where they should
-/// be, the depth scan does not lie on its walls, or much is there and nothing matches.
-bool Localizer::Impl::contradicts(const View& view, const std::vector<int>& landmarks,
-                                  const Se3& pose, int inliers) {
+/// What the view shows, compared with what the map has at `pose`: are its landmarks where they
+/// should be, does the depth scan lie on its walls, does what is there match?
+ViewCheck Localizer::Impl::check(const View& view, const std::vector<int>& landmarks,
+                                 const Se3& pose, int inliers) const {
   const DepthAgreement depth = depth_agreement(map, landmarks, view.frame, pose, motion.planar());
-  ScanAgreement scan;
-  if (field) scan = scan_agreement(*field, view.scan, to_planar(pose));
-  evidence.depth_share = depth.judged() >= kEnoughLandmarks ? depth.share() : 1.0;
-  evidence.scan_share = scan.points >= kEnoughPoints ? scan.share : 1.0;
-  evidence.matched_share =
-      std::min(1.0, static_cast<double>(inliers) / std::max(1, depth.at_depth));
-  return evidence.depth_share < kLeastDepthShare || evidence.scan_share < kLeastScanShare ||
-         (depth.at_depth >= kEnoughAtDepth && evidence.matched_share < kLeastMatchedShare);
+  ViewCheck out;
+  if (depth.judged() >= kEnoughLandmarks) out.depth_share = depth.share();
+  if (finder.has_grid() && view.scan.size() >= kEnoughPoints) {
+    out.scan_share = scan_agreement(finder.field(), view.scan, to_planar(pose)).share;
+  }
+  out.matched_share = std::min(1.0, static_cast<double>(inliers) / std::max(1, depth.at_depth));
+  out.contradicts = out.depth_share < kLeastDepthShare || out.scan_share < kLeastScanShare ||
+                    (depth.at_depth >= kEnoughAtDepth && out.matched_share < kLeastMatchedShare);
+  return out;
 }
 
 void Localizer::Impl::follow(const View& view) {
   const MotionPrediction prediction = motion.predict(view.frame.time_s);
   const LocalMap local = select_local_map(map, tracked, prediction.prior.map_from_base);
   const TrackResult result = track_frame(map, local.landmarks, view.features, prediction);
-  const bool fits =
-      result.status == TrackStatus::kTracked &&
-      !contradicts(view, local.landmarks, result.solution.map_from_base, result.solution.inliers);
-  if (fits) {
-    take_in(view, result);
-  } else {
-    miss(view, local.landmarks, prediction);
+  if (result.status == TrackStatus::kTracked) {
+    const PoseSolution& solution = result.solution;
+    const ViewCheck seen = check(view, local.landmarks, solution.map_from_base, solution.inliers);
+    if (!seen.contradicts) {
+      take_in(view, result, seen);
+      return;
+    }
   }
+  if (!hold_by_scan(view, local.landmarks)) miss(view, local.landmarks, prediction);
 }
 
-void Localizer::Impl::take_in(const View& view, const TrackResult& result) {
+/// Where the map knows no features, or not from this side, its walls still hold the pose.
+bool Localizer::Impl::hold_by_scan(const View& view, const std::vector<int>& local_landmarks) {
+  if (broken || !finder.has_grid() || view.scan.size() < kEnoughPoints) return false;
   const double time_s = view.frame.time_s;
-  motion.correct(time_s, result.solution);
+  const Se3 pose = believed(time_s);
+  if (view.shows_plenty() && map_knows_view(pose)) return false;
+  const GridMatch match = match_scan(finder.field(), view.scan, to_planar(pose),
+                                     motion.dead_reckoning().pose_covariance());
+  const Se3 held = from_planar(match.look.map_from_base);
+  const ViewCheck seen = check(view, local_landmarks, held, kPlenty);
+  if (seen.contradicts || seen.scan_share < kHeldScanShare) return false;
+  motion.correct(match.look);
+  tracked.clear();
+  note_agreement(time_s, 0, seen);
+  return true;
+}
+
+void Localizer::Impl::take_in(const View& view, const TrackResult& result, const ViewCheck& seen) {
+  motion.correct(view.frame.time_s, result.solution);
   tracked.clear();
   for (const FeatureMatch& m : result.matches) tracked.push_back(m.landmark);
+  note_agreement(view.frame.time_s, telling(result.matches), seen);
+}
+
+void Localizer::Impl::note_agreement(double time_s, int inliers, const ViewCheck& seen) {
   if (time_s - last_fix_s > kReconfirmAfterS && state == State::kTracking) {
     state = State::kConfirming;
     evidence.agreeing_frames = 0;
   }
   ++evidence.agreeing_frames;
-  evidence.inliers = telling(result.matches);
+  evidence.inliers = inliers;
+  evidence.depth_share = seen.depth_share;
+  evidence.matched_share = seen.matched_share;
   last_fix_s = time_s;
   misses = 0;
-  doubt = false;
+  broken = doubt = false;
   contradicted_since_s.reset();
 }
 
 void Localizer::Impl::miss(const View& view, const std::vector<int>& local_landmarks,
                            const MotionPrediction& prediction) {
   const double time_s = view.frame.time_s;
-  const Se3& believed = prediction.prior.map_from_base;
+  const Se3& pose = prediction.prior.map_from_base;
   motion.miss(time_s);
   tracked.clear();
   ++misses;
   doubt = view.shows_plenty();
+  // In an unbroken view nobody has carried the rover: the map is old, or never saw this side.
   const bool contradicted =
-      doubt && (map_knows_view(believed) || contradicts(view, local_landmarks, believed, kPlenty));
+      (broken || !was_sure) && doubt &&
+      (map_knows_view(pose) || check(view, local_landmarks, pose, kPlenty).contradicts);
   if (contradicted && !contradicted_since_s) contradicted_since_s = time_s;
-  const bool unconfirmed = state == State::kConfirming && misses >= kForgetFixAfter;
-  const bool carried_off = contradicted_since_s && time_s - *contradicted_since_s >= kLostAfterS;
-  if (unconfirmed || carried_off || prediction.sigma_position_m > config.localizer.lost_sigma_m) {
+  const bool carried_off = contradicted_since_s && misses >= kLostAfterMisses &&
+                           time_s - *contradicted_since_s >= kLostAfterS;
+  if (carried_off || motion.carried() ||
+      prediction.sigma_position_m > config.localizer.lost_sigma_m)
     lose();
-  }
 }
 
 /// Enough frames agree, and the whole map has no better place for what they show.
@@ -310,15 +350,15 @@ bool Localizer::Impl::is_convincing() const {
   if (evidence.agreeing_frames < config.localizer.confirmation_frames) return false;
   // Blind for a moment only, or told where to look: that speaks for the place, too.
   if (was_sure || prior) {
-    return evidence.scan_share >= kStillScanShare && evidence.matched_share >= kStillMatched &&
-           evidence.rival_share <= kMostRivalTracking;
+    return evidence.scan_share >= kStillScanShare && evidence.rival_share <= kMostRival &&
+           evidence.shape_margin >= kWorseThanRival;
   }
-  if (moved_away && evidence.agreeing_frames < kFramesAfterLoss) return false;
-  const double sure_recognitions = motion.planar() ? kSureRecognitions : kSureRecognition;
-  return evidence.scan_share >= kSureScanShare && evidence.depth_share >= kSureDepthShare &&
-         evidence.matched_share >= kSureMatched && evidence.inliers >= kSureTelling &&
-         evidence.recognitions >= sure_recognitions && evidence.rival_share <= kMostRival &&
-         confidence_of(evidence) >= kOkConfidence;
+  if (!finder.has_grid()) {
+    return evidence.depth_share >= kSureDepthShare && evidence.inliers >= kSureTelling &&
+           evidence.recognitions >= kSureRecognition && evidence.rival_share <= kMostRival;
+  }
+  return evidence.scan_points >= kSureScanPoints && evidence.scan_share >= kSureScanShare &&
+         evidence.rival_share <= kMostRival && confidence_of(evidence) >= kOkConfidence;
 }
 
 void Localizer::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan) {
@@ -328,22 +368,24 @@ void Localizer::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan) {
   note_interval(view.frame.time_s);
   if (view.frame.gray.empty()) return;
   view.features = extract_features(view.frame, map.camera(), config.features, config.depth);
-  if (field && !view.frame.depth.empty()) {
+  if (finder.has_grid() && !view.frame.depth.empty()) {
     view.scan = obstacle_points(view.frame.depth, view.frame.depth_unit_m, map.camera(),
                                 map.base_from_camera(), config);
   }
-  votes.fade();
-  if (!motion.planar()) votes.clear();  // without odometry only one view's votes can be compared
-  if (state != State::kSearching) follow(view);
+  finder.fade();
+  if (!motion.planar()) finder.forget_candidates();  // nothing ties one view to the next
+  const bool is_new = finder.see(view.frame.time_s, odom_from_base(view.frame.time_s), view.scan,
+                                 view.frame.depth, view.frame.depth_unit_m);
+  const bool goes_on = continuity.follows(view.frame, odom_from_base(view.frame.time_s));
+  broken |= !goes_on || !motion.planar();
+  const bool believed_before = state != State::kSearching;
+  if (believed_before) follow(view);
+  const bool just_lost = believed_before && state == State::kSearching;  // says so for a frame
   const bool spot_check = frames % kSpotCheckEvery == 0;
-  if (state == State::kSearching) {
-    search(view);
-  } else if (state == State::kConfirming || misses > 0 || spot_check) {
-    const LocalizerEvidence kept = evidence;
+  if (!just_lost && (state != State::kTracking || misses > 0 || spot_check)) {
     look_everywhere(view);
-    evidence = kept;
-    count_votes();
-    if (evidence.rival_share > 0.5) give_way();
+    judge_places(view, is_new);
+    weigh_support(view.frame.time_s);
   }
   const MotionPrediction now = motion.predict(view.frame.time_s);
   evidence.sigma_position_m = now.sigma_position_m;
@@ -351,7 +393,6 @@ void Localizer::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan) {
   if (state == State::kConfirming && is_convincing()) {
     state = State::kTracking;
     was_sure = true;
-    moved_away = false;
     prior.reset();  // it has done its work; from here on the map decides
   }
 }
@@ -373,7 +414,9 @@ PoseEstimate Localizer::Impl::estimate(double time_s) {
       !doubt && !camera_is_silent(time_s) && evidence.unseen_s <= config.localizer.degraded_after_s;
   const bool sure = state == State::kTracking && evidence.rival_share <= kMostRivalTracking &&
                     e.confidence >= kOkConfidence;
-  e.health = sure && fresh ? Health::kOk : Health::kDegraded;
+  // A place that has yet to convince is a guess; somebody's word that it is there is more.
+  const bool guess = !was_sure && !prior && e.confidence < kLeastBelief;
+  e.health = sure && fresh ? Health::kOk : guess ? Health::kLost : Health::kDegraded;
   return e;
 }
 

@@ -21,9 +21,10 @@ struct PosePrior {
   double sigma_heading_rad = 0.26;
 };
 
-/// Feed it every observation in time order. Without a prior it finds itself by appearance first,
-/// geometry to confirm; it says kLost until then, kDegraded while the place is being confirmed, and
-/// kOk only while frames keep matching the map and nothing they show contradicts it.
+/// Feed it every observation in time order. Without a prior it finds itself by appearance and by
+/// the shape of what stands around; it says kLost until a place is more likely than not, kDegraded
+/// while that is being confirmed, and kOk only while frames keep matching the map and nothing they
+/// show contradicts it.
 class Localizer {
  public:
   Localizer(const SlamConfig& config, const Rig& rig, const maps::SavedMap& map,

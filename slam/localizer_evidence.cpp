@@ -14,9 +14,10 @@ constexpr double kRightM = 0.20, kRightRad = 10.0 * maps::kPi / 180.0;
 constexpr double kMostFrames = 30.0;  // more of them add nothing: they share their errors
 constexpr double kMostRecognitions = 6.0;
 
-// constant, log inliers, matched share, depth share, scan share, log frames, recognitions, rival
-constexpr std::array<double, kConfidenceFeatures> kWeights = {-9.0, 0.8, 1.0, 4.0,
-                                                              3.0,  1.2, 0.8, -5.0};
+// constant, log inliers, matched share, depth share, scan share, log frames, recognitions, rival,
+// shape margin, log scan points, surface share
+constexpr std::array<double, kConfidenceFeatures> kWeights = {-16.0, 0.4,  0.0,  1.0, 4.0, 1.0,
+                                                              1.0,   -5.0, 15.0, 0.5, 8.0};
 
 }  // namespace
 
@@ -36,7 +37,10 @@ std::array<double, kConfidenceFeatures> confidence_features(const LocalizerEvide
           std::clamp(e.scan_share, 0.0, 1.0),
           std::log1p(std::clamp<double>(e.agreeing_frames, 0.0, kMostFrames)),
           std::log1p(std::clamp(e.recognitions, 0.0, kMostRecognitions)),
-          std::clamp(e.rival_share, 0.0, 1.0)};
+          std::clamp(e.rival_share, 0.0, 1.0),
+          std::clamp(e.shape_margin, -0.3, 0.3),
+          std::log1p(std::clamp(e.scan_points, 0, 400) / 40.0),
+          std::clamp(e.surface_share, 0.0, 1.0)};
 }
 
 double confidence_of(const LocalizerEvidence& e) {

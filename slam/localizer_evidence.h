@@ -10,10 +10,13 @@ struct LocalizerEvidence {
   int inliers = 0;             ///< of the last frame that matched, on what tells places apart
   double matched_share = 0.0;  ///< of the landmarks at their depth, how many matched
   double depth_share = 1.0;    ///< DepthAgreement::share(), with enough to judge
-  double scan_share = 1.0;     ///< of the depth scan, how much lies on the grid's walls
-  int agreeing_frames = 0;     ///< since the place was recognised
-  double recognitions = 0.0;   ///< by appearance over the whole map, sum of their weights
-  double rival_share = 0.0;    ///< what speaks for the best other place, as a share of that
+  double scan_share = 1.0;     ///< of the local scan, how much fits the grid
+  double surface_share = 1.0;  ///< of what keyframes saw there, how much the views show
+  double shape_margin = 0.0;   ///< mean of these two, less that at the best other place
+  int scan_points = 0;
+  int agreeing_frames = 0;    ///< since the place was recognised
+  double recognitions = 0.0;  ///< by appearance over the whole map, sum of their weights
+  double rival_share = 0.0;   ///< what speaks for the best other place, as a share of that
   double sigma_position_m = 0.0;
   double sigma_heading_rad = 0.0;
   double unseen_s = 0.0;  ///< since the last frame that matched
@@ -33,7 +36,7 @@ double confidence_of(const LocalizerEvidence& evidence);
 double chance_within_limits(double sigma_position_m, double sigma_heading_rad);
 
 /// The inputs of the logistic model, first the constant 1; for the fit.
-inline constexpr std::size_t kConfidenceFeatures = 8;
+inline constexpr std::size_t kConfidenceFeatures = 11;
 std::array<double, kConfidenceFeatures> confidence_features(const LocalizerEvidence& evidence);
 
 }  // namespace rovigo::slam

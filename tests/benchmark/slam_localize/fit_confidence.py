@@ -9,7 +9,7 @@ import math
 import sys
 
 NAMES = ["constant", "log inliers", "matched share", "depth share", "scan share", "log frames",
-         "recognitions", "rival"]
+         "recognitions", "rival", "shape margin", "log scan points", "surface share"]
 
 
 def read(files):

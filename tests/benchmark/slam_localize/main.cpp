@@ -67,10 +67,11 @@ void print_trace(const Run& run) {
     if (!a.is_frame || !a.evidence) continue;
     const slam::LocalizerEvidence& e = *a.evidence;
     std::printf(
-        "            inliers %d matched %.2f depth %.2f scan %.2f frames %d recognised %.2f rival "
-        "%.2f\n",
-        e.inliers, e.matched_share, e.depth_share, e.scan_share, e.agreeing_frames, e.recognitions,
-        e.rival_share);
+        "            inliers %d matched %.2f depth %.2f scan %.2f surface %.2f (margin %.2f, %d "
+        "points) frames %d "
+        "recognised %.2f rival %.2f\n",
+        e.inliers, e.matched_share, e.depth_share, e.scan_share, e.surface_share, e.shape_margin,
+        e.scan_points, e.agreeing_frames, e.recognitions, e.rival_share);
   }
 }
 
@@ -88,11 +89,6 @@ void dump(const std::vector<Run>& runs, const std::filesystem::path& file) {
       out << '\n';
     }
   }
-}
-
-/// Recordings whose truth is whole are kept; one that a stopped run left half is made again.
-bool is_made(const std::filesystem::path& recording) {
-  return std::filesystem::exists(recording) && std::filesystem::exists(truth_of(recording));
 }
 
 class Bench {

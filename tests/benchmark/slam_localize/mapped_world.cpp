@@ -29,8 +29,12 @@ MappedWorld open_mapped_world(const std::string& name, const std::filesystem::pa
       sim::true_grid(world, config.slam.grid.grid_resolution_m, 0.02, config.robot.body_height_m);
   const auto map_file = folder / "map.rovigo";
   if (remap || !std::filesystem::exists(map_file)) {
-    const sim::Route route = mapping_route(name, world, config);
-    maps::save_map(map_drive(world, name, route, kTourSeed, config), map_file);
+    const auto tour = folder / "tour.rawlog";
+    if (!is_made(tour)) {
+      const sim::Route route = mapping_route(name, world, config);
+      record_drive(world, name, route, sim::Scenario{}, kTourSeed, config, tour);
+    }
+    maps::save_map(map_recording(tour, config), map_file);
   }
   out.map = maps::load_map(map_file);
   for (const maps::StoredPose& p : out.map.trajectory) {

@@ -101,6 +101,10 @@ std::filesystem::path truth_of(const std::filesystem::path& recording) {
   return std::filesystem::path(recording).replace_extension(".truth.txt");
 }
 
+bool is_made(const std::filesystem::path& recording) {
+  return std::filesystem::exists(recording) && std::filesystem::exists(truth_of(recording));
+}
+
 namespace {
 
 /// Drives a route on true poses; a collision spoils what is measured.
@@ -129,17 +133,13 @@ void record_drive(const sim::World& world, const std::string& world_name, const 
   recorder.finish();
 }
 
-maps::SavedMap map_drive(const sim::World& world, const std::string& world_name,
-                         const sim::Route& route, std::uint64_t seed,
-                         const app::RovigoConfig& config) {
-  const planning::Planner planner = app::route_planner(world, config, route.speed_m_s);
-  const TPose2D start = app::route_start(route, world, planner);
-  sim::Simulator simulator(world, simulator_options(start, sim::Scenario{}, seed, config));
-  const slam::RecordingInfo info = recording_info(simulator, world_name, seed);
-  slam::Slam slam(config.slam, info.rig);
-  drive(simulator, route, start, planner, config, [&](const auto& o) { slam.process(o); });
+maps::SavedMap map_recording(const std::filesystem::path& recording,
+                             const app::RovigoConfig& config) {
+  const auto reader = slam::open_recording(recording);
+  slam::Slam slam(config.slam, reader->info().rig);
+  while (const auto observation = reader->next()) slam.process(*observation);
   maps::SavedMap map = slam.finish();
-  map.metadata.simulation = info.simulation;
+  map.metadata.simulation = reader->info().simulation;
   return map;
 }
 

@@ -22,15 +22,17 @@ inline constexpr double kTurnRateRadS = 0.5;
 /// Beside a recording: where the rover truly was at every observation.
 std::filesystem::path truth_of(const std::filesystem::path& recording);
 
+/// Whether recording and truth are whole; one that a stopped run left half is made again.
+bool is_made(const std::filesystem::path& recording);
+
 /// Drives a route on true poses.
 void record_drive(const sim::World& world, const std::string& world_name, const sim::Route& route,
                   const sim::Scenario& scenario, std::uint64_t seed,
                   const app::RovigoConfig& config, const std::filesystem::path& recording);
 
-/// Drives a route on true poses, mapping on the way.
-maps::SavedMap map_drive(const sim::World& world, const std::string& world_name,
-                         const sim::Route& route, std::uint64_t seed,
-                         const app::RovigoConfig& config);
+/// As `rovigo map` does.
+maps::SavedMap map_recording(const std::filesystem::path& recording,
+                             const app::RovigoConfig& config);
 
 /// Puts the rover down at `world_from_base` and turns it in place for `duration_s`.
 void record_turn(const sim::World& world, const std::string& world_name,

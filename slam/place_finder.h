@@ -1,0 +1,91 @@
+#pragma once
+// Where in the map may the rover be? Appearance and the shape of what stands around each propose
+// places; every proposal is then judged by both, over several views tied together by odometry.
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "slam/depth_memory.h"
+#include "slam/local_scan.h"
+#include "slam/relocalizer.h"
+#include "slam/scan_search.h"
+
+namespace rovigo::slam {
+
+/// A place proposed: where the odometry's frame would lie in the map.
+struct PlaceCandidate {
+  Se3 map_from_odom;
+  double recognitions = 0.0;  ///< weights of the views recognised there, older ones fading
+  double scan_share = 0.0;    ///< of the local scan, how much fits the grid there
+  double surface_share = kUnjudgedShare;  ///< of what keyframes saw there, how much views show
+
+  static constexpr double kUnjudgedShare =
+      0.85;  ///< nobody looked that way: neither for nor against
+  double shape() const { return 0.5 * (scan_share + surface_share); }
+};
+
+/// What speaks for one place, and for the best other one.
+struct PlaceSupport {
+  double recognitions = 0.0, rival_recognitions = 0.0;
+  double scan_share = 1.0, surface_share = 1.0;
+  double shape = 1.0, rival_shape = 0.0;  ///< PlaceCandidate::shape()
+  int scan_points = 0;
+  double rival_recognition_share() const {
+    const double all = recognitions + rival_recognitions;
+    return all > 0.0 ? rival_recognitions / all : 0.0;
+  }
+};
+
+class PlaceFinder {
+ public:
+  /// `by_shape` false (a camera whose height is not known) leaves appearance alone to judge.
+  PlaceFinder(const maps::SavedMap& map, const CameraModel& camera, const Se3& base_from_camera,
+              bool by_shape);
+
+  /// A frame's depth image, and its scan in base_link; true if it showed enough new to judge again.
+  bool see(double time_s, const Se3& odom_from_base, const std::vector<ScanPoint>& scan,
+           const cv::Mat& depth, double depth_unit_m);
+
+  /// A view recognised: `weight` 1 for a clear one.
+  void recognize(const Se3& map_from_base, const Se3& odom_from_base, double weight);
+  /// Older recognitions count less: once a frame.
+  void fade();
+
+  /// Searches the whole grid for places that the local scan fits (inside `region`, if given), and
+  /// judges all candidates anew.
+  void search(const Se3& odom_from_base, const std::optional<PoseRegion>& region);
+  /// Judges the candidates there are.
+  void judge(const Se3& odom_from_base);
+
+  std::optional<PlaceCandidate> best() const;
+  PlaceSupport support(const Se3& map_from_base, const Se3& odom_from_base) const;
+
+  void clear();
+  /// Forgets recognitions, not the scan: where views cannot be tied together.
+  void forget_candidates() { candidates_.clear(); }
+
+  bool has_grid() const { return field_.has_value(); }
+  const SignedDistanceField& field() const { return *field_; }
+
+ private:
+  struct View {
+    Se3 odom_from_base;
+    DepthView depth;
+  };
+
+  double surface_share(const Se3& map_from_odom) const;
+  void propose(const Se3& map_from_odom, const Se3& odom_from_base);
+  void refine(PlaceCandidate& candidate, const Se3& odom_from_base) const;
+  void tidy(const Se3& odom_from_base);
+
+  std::optional<SignedDistanceField> field_;
+  std::optional<ScanSearch> scan_search_;
+  std::optional<DepthMemory> depths_;
+  std::deque<View> views_;  ///< the newest of the local scan's
+  LocalScan local_scan_;
+  std::vector<ScanPoint> points_;  ///< of the local scan, in base_link of the newest frame
+  std::vector<PlaceCandidate> candidates_;
+};
+
+}  // namespace rovigo::slam
