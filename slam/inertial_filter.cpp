@@ -43,6 +43,7 @@ constexpr double kFeltSigmaMS2 = 0.03;  // what shaking leaves of the mean over 
 constexpr double kMinSlipMS = 0.1;
 constexpr double kCarriedRad = 0.15;  // turned so far on standing wheels: carried
 constexpr double kMinTurnToCalibrate = 0.15;
+constexpr double kMostScaleSigmas = 4.0;
 
 constexpr std::array<int, 3> kInPlane = {S::kPosition, S::kPosition + 1, S::kAttitude + 2};
 
@@ -285,7 +286,8 @@ double InertialFilter::judge_both_slipping(const WheelStep& wheels, double gripp
   const bool felt = accelerometer_time_s_ && time_s_ - *accelerometer_time_s_ < kGyroTimeoutS;
   const double scale = 1.0 + state_.speed_scale;
   const double wheel_speed = gripped_m / wheels.dt * scale;
-  if (!felt || wheels.dt > kGyroTimeoutS) {
+  // Wheels that rest do not spin: a body that feels motion above them is carried.
+  if (!felt || wheels.dt > kGyroTimeoutS || wheels_rest(wheels)) {
     both_slip_ = false;
     felt_speed_m_s_ = wheel_speed;
     return gripped_m;
@@ -312,9 +314,8 @@ double InertialFilter::judge_both_slipping(const WheelStep& wheels, double gripp
 
 /// Wheels at rest and a body that turns: it hangs in somebody's hands, or on a turntable.
 void InertialFilter::judge_carrying(const WheelStep& wheels) {
-  const bool wheels_rest = std::abs(wheels.distance_m) < 1e-4 && std::abs(wheels.turn_rad) < 1e-4;
   turned_standing_rad_ =
-      wheels_rest && !standing_ && gyro_rate_ ? turned_standing_rad_ + gyro_turn_rad_ : 0.0;
+      wheels_rest(wheels) && !standing_ && gyro_rate_ ? turned_standing_rad_ + gyro_turn_rad_ : 0.0;
   if (std::abs(turned_standing_rad_) > kCarriedRad) carried_ = true;
 }
 
@@ -424,6 +425,12 @@ void InertialFilter::correct(const PlanarInformation& look, double floor_m, doub
   const S::Vector error = gain * (h * away - g);
   if (!error.allFinite() || !gain.allFinite()) return;
   state_.inject(error);
+  // A jump of the pose (carried, wrongly recognised) must not leave wheels that no rover has.
+  const auto within = [](double scale, double sigma) {
+    return std::clamp(scale, -kMostScaleSigmas * sigma, kMostScaleSigmas * sigma);
+  };
+  state_.speed_scale = within(state_.speed_scale, config_.wheel_speed_scale_sigma);
+  state_.turn_scale = within(state_.turn_scale, config_.wheel_turn_scale_sigma);
   state_.map_from_base = normalized(state_.map_from_base);
   p -= gain * h * columns.transpose();
   p = 0.5 * (p + p.transpose()).eval();
