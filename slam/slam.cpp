@@ -19,6 +19,7 @@
 #include "slam/tracker.h"
 #include "slam/tracking_health.h"
 #include "slam/trajectory_history.h"
+#include "slam/view_continuity.h"
 #include "slam/view_verdict.h"
 #include "slam/wall_ties.h"
 
@@ -42,6 +43,7 @@ struct Slam::Impl {
                                           : from_mrpt(base_from_optical({}))),
         map(settings, camera, base_from_camera),
         motion(settings, r),
+        continuity(camera, base_from_camera),
         back_end(settings, map, motion.planar()),
         recovery(settings, map, back_end.relocalizer(), motion, health),
         wall_ties(settings),
@@ -68,6 +70,7 @@ struct Slam::Impl {
   LandmarkMap map;
   MotionModel motion;
   TrackingHealth health;
+  ViewContinuity continuity;
   BackEnd back_end;
   Recovery recovery;
   WallTies wall_ties;
@@ -163,7 +166,8 @@ void Slam::Impl::judge(const CameraFrame& frame, bool tracked, const Se3& pose) 
   health.update({.time_s = frame.time_s,
                  .tracked = tracked,
                  .verdict = verdict,
-                 .carried = motion.carried()});
+                 .carried = motion.carried(),
+                 .continuous = continuity.follows(frame, pose) && motion.planar()});
   recovery.mend(history);
 }
 
