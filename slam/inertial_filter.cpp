@@ -44,6 +44,7 @@ constexpr double kMinSlipMS = 0.1;
 constexpr double kCarriedRad = 0.15;  // turned so far on standing wheels: carried
 constexpr double kMinTurnToCalibrate = 0.15;
 constexpr double kMostScaleSigmas = 4.0;
+constexpr double kLongestSlideS = 0.5;  // braking at 2 m/s^2 from 1 m/s
 
 constexpr std::array<int, 3> kInPlane = {S::kPosition, S::kPosition + 1, S::kAttitude + 2};
 
@@ -286,8 +287,8 @@ double InertialFilter::judge_both_slipping(const WheelStep& wheels, double gripp
   const bool felt = accelerometer_time_s_ && time_s_ - *accelerometer_time_s_ < kGyroTimeoutS;
   const double scale = 1.0 + state_.speed_scale;
   const double wheel_speed = gripped_m / wheels.dt * scale;
-  // Wheels that rest do not spin: a body that feels motion above them is carried.
-  if (!felt || wheels.dt > kGyroTimeoutS || wheels_rest(wheels)) {
+  // A slide on blocked wheels is soon over: a body that moves for longer above them is carried.
+  if (!felt || wheels.dt > kGyroTimeoutS || resting_s_ > kLongestSlideS) {
     both_slip_ = false;
     felt_speed_m_s_ = wheel_speed;
     return gripped_m;
@@ -314,8 +315,9 @@ double InertialFilter::judge_both_slipping(const WheelStep& wheels, double gripp
 
 /// Wheels at rest and a body that turns: it hangs in somebody's hands, or on a turntable.
 void InertialFilter::judge_carrying(const WheelStep& wheels) {
+  const bool wheels_rest = std::abs(wheels.distance_m) < 1e-4 && std::abs(wheels.turn_rad) < 1e-4;
   turned_standing_rad_ =
-      wheels_rest(wheels) && !standing_ && gyro_rate_ ? turned_standing_rad_ + gyro_turn_rad_ : 0.0;
+      wheels_rest && !standing_ && gyro_rate_ ? turned_standing_rad_ + gyro_turn_rad_ : 0.0;
   if (std::abs(turned_standing_rad_) > kCarriedRad) carried_ = true;
 }
 

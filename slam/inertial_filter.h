@@ -3,7 +3,6 @@
 // teach them.
 
 #include <Eigen/Core>
-#include <cmath>
 #include <optional>
 
 #include "maps/geometry.h"
@@ -68,9 +67,6 @@ class InertialFilter {
   double distance_gripped(const WheelStep& wheels);
   void judge_one_slipping(double wheel_turn_rate, double dt);
   void teach_turn_scale(double wheel_turn_rate, double apart);
-  static bool wheels_rest(const WheelStep& wheels) {
-    return std::abs(wheels.distance_m) < 1e-4 && std::abs(wheels.turn_rad) < 1e-4;
-  }
   double judge_both_slipping(const WheelStep& wheels, double gripped_m);
   void judge_carrying(const WheelStep& wheels);
   bool looks_standing(const WheelStep& wheels);
