@@ -40,8 +40,16 @@ void DepthScanner::lay_samples(int cols, int rows) {
   }
 }
 
-DepthScan DepthScanner::scan(const cv::Mat& depth, double unit_m, const Se3& level_from_camera) {
+DepthScanner::Samples DepthScanner::sample(const cv::Mat& depth) {
   lay_samples(depth.cols, depth.rows);
+  Samples out{depth.cols, depth.rows, {}};
+  out.depths.reserve(samples_.size());
+  for (const Sample& s : samples_) out.depths.push_back(depth.at<std::uint16_t>(s.v, s.u));
+  return out;
+}
+
+DepthScan DepthScanner::scan(const Samples& samples, double unit_m, const Se3& level_from_camera) {
+  lay_samples(samples.cols, samples.rows);
   DepthScan out;
   out.camera = level_from_camera.translation.cast<float>();
   out.columns_per_rad = columns_per_rad_;
@@ -55,13 +63,13 @@ DepthScan DepthScanner::scan(const cv::Mat& depth, double unit_m, const Se3& lev
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (i == fine_from_) out.fine_from = static_cast<int>(out.rays.size());
     const Sample& s = samples_[i];
-    const float z = unit * depth.at<std::uint16_t>(s.v, s.u);
+    const float z = unit * samples.depths[i];
     if (z < nearest || z > farthest) continue;
     const Eigen::Vector3f d = rotation * s.ray;
     const float across = std::sqrt(d.x() * d.x() + d.y() * d.y());
     if (across < kUprightRay) continue;
-    out.rays.push_back(
-        {d.x() / across, d.y() / across, d.z() / across, z * across, sigma_at_1m * z * z * across});
+    out.rays.push_back({d.x() / across, d.y() / across, d.z() / across, z * across,
+                        sigma_at_1m * z * z * across, false});
   }
   if (fine_from_ >= samples_.size()) out.fine_from = static_cast<int>(out.rays.size());
   return out;

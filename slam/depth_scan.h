@@ -2,6 +2,7 @@
 // A depth image as rays over the floor.
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -16,7 +17,8 @@ struct ScanRay {
   float along_x = 0, along_y = 0;  ///< unit vector over the floor
   float slope = 0;                 ///< metres of height per metre over the floor
   float range_m = 0;
-  float sigma_m = 0;  ///< of the range
+  float sigma_m = 0;    ///< of the range
+  bool moving = false;  ///< ends on what moves: it tells what is free before that, and no more
 };
 
 /// In the *level* frame: base_link turned upright, z = 0 on the floor.
@@ -35,7 +37,17 @@ class DepthScanner {
 
   /// `depth` is 16-bit, `unit_m` metres a step, 0 for no return; of the camera's size or a whole
   /// fraction of it. Only height and direction of `level_from_camera` (optical frame) matter.
-  DepthScan scan(const cv::Mat& depth, double unit_m, const Se3& level_from_camera);
+  DepthScan scan(const cv::Mat& depth, double unit_m, const Se3& level_from_camera) {
+    return scan(sample(depth), unit_m, level_from_camera);
+  }
+
+  /// The same in two steps: what a scan reads of an image is a small part of it.
+  struct Samples {
+    int cols = 0, rows = 0;  ///< of the image
+    std::vector<std::uint16_t> depths;
+  };
+  Samples sample(const cv::Mat& depth);
+  DepthScan scan(const Samples& samples, double unit_m, const Se3& level_from_camera);
 
  private:
   struct Sample {

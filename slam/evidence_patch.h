@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <set>
 
 #include "maps/grid_geometry.h"
 
@@ -34,16 +35,21 @@ class EvidencePatch {
   /// believed after a few looks (clamping: Yguel et al. 2007, as in OctoMap).
   static void add(std::int8_t& evidence, int steps);
 
+  /// Something moved where this cell is: little evidence proves nothing around there.
+  void doubt(maps::Cell cell) { doubted_.insert(index_of(cell)); }
+
   struct TileIndex {
     int y = 0, x = 0;
     friend auto operator<=>(const TileIndex&, const TileIndex&) = default;
   };
   static TileIndex index_of(maps::Cell cell);
   const std::map<TileIndex, Tile>& tiles() const { return tiles_; }
+  bool is_doubted(TileIndex tile) const { return doubted_.count(tile) != 0; }
   std::size_t memory_bytes() const { return tiles_.size() * (sizeof(Tile) + sizeof(TileIndex)); }
 
  private:
   std::map<TileIndex, Tile> tiles_;
+  std::set<TileIndex> doubted_;
 };
 
 }  // namespace rovigo::slam

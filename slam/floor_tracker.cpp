@@ -20,7 +20,6 @@ constexpr double kMostTiltRad = 0.08, kMostHeightM = 0.08;  // off by more, it i
 // The feet of walls are no floor: they stand in a narrow range and spread in height.
 constexpr double kLeastRangeSpreadM = 0.1;
 constexpr double kLeastFlatShare = 0.5;  // of the returns that might be floor, on the plane
-constexpr double kWorthAnotherScanM = 0.002, kWorthAnotherScanRad = 0.002;
 
 struct FloorPoint {
   Eigen::Vector3d row;  ///< 1, x, y
@@ -71,10 +70,10 @@ FloorTracker::FloorTracker(const FloorTrackerConfig& config) : config_(config) {
   plane_.sigma_tilt_rad = t;
 }
 
-bool FloorTracker::update(const DepthScan& scan) {
+void FloorTracker::update(const DepthScan& scan) {
   const auto points = floor_points(scan, covariance_);
-  if (static_cast<int>(points.size()) < config_.min_points) return false;
-  if (range_spread(points) < kLeastRangeSpreadM) return false;
+  if (static_cast<int>(points.size()) < config_.min_points) return;
+  if (range_spread(points) < kLeastRangeSpreadM) return;
   const double wh = config_.height_walk_m, wt = config_.tilt_walk_rad;
   Eigen::Matrix3d prior = covariance_;
   prior.diagonal() += Eigen::Vector3d(wh * wh, wt * wt, wt * wt);
@@ -97,18 +96,16 @@ bool FloorTracker::update(const DepthScan& scan) {
     step = h.ldlt().solve(b);
     information = h;
   }
-  if (flat_share(points, step) < kLeastFlatShare) return false;
+  if (flat_share(points, step) < kLeastFlatShare) return;
   const FloorPlane next{
       plane_.height_m + step[0], plane_.slope_x + step[1], plane_.slope_y + step[2], 0, 0,
       plane_.looks + 1};
   const double tilt = std::hypot(next.slope_x, next.slope_y);
-  if (!(tilt < kMostTiltRad) || !(std::abs(next.height_m) < kMostHeightM)) return false;
+  if (!(tilt < kMostTiltRad) || !(std::abs(next.height_m) < kMostHeightM)) return;
   plane_ = next;
   covariance_ = information.inverse();
   plane_.sigma_height_m = std::sqrt(covariance_(0, 0));
   plane_.sigma_tilt_rad = std::sqrt(std::max(covariance_(1, 1), covariance_(2, 2)));
-  return std::abs(step[0]) > kWorthAnotherScanM ||
-         std::hypot(step[1], step[2]) > kWorthAnotherScanRad;
 }
 
 Se3 FloorTracker::corrected(const Se3& nominal) const {

@@ -32,9 +32,8 @@ class FloorTracker {
  public:
   explicit FloorTracker(const FloorTrackerConfig& config = {});
 
-  /// Takes in a scan that was made with `corrected(...)`. True when the plane moved enough for the
-  /// scan to be worth making again.
-  bool update(const DepthScan& scan);
+  /// Takes in a scan that was made with `corrected(...)`.
+  void update(const DepthScan& scan);
 
   const FloorPlane& plane() const { return plane_; }
 

@@ -10,6 +10,8 @@ namespace rovigo::slam {
 namespace {
 
 constexpr int kOccupiedSteps = 8;  // log-odds 0.5: far surfaces, rarely seen, are obstacles too
+// Where something moved, what may be its standing leg is an obstacle only after several looks.
+constexpr int kOccupiedAmidMotionSteps = 24;
 constexpr int kFreeSteps = -5;
 constexpr int kMostCells = 8000;  // a side
 constexpr int kStripRows = 64;
@@ -39,9 +41,10 @@ class Layer {
     }
     across_ = last.x - first_.x + 1;
     down_ = last.y - first_.y + 1;
-    tiles_.resize(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_), nullptr);
+    tiles_.resize(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_));
     for (const auto& [i, tile] : placed.patch->tiles()) {
-      tiles_[static_cast<std::size_t>((i.y - first_.y) * across_ + i.x - first_.x)] = &tile;
+      tiles_[static_cast<std::size_t>((i.y - first_.y) * across_ + i.x - first_.x)] = {
+          &tile, placed.patch->is_doubted(i)};
     }
     for (const int y : {first_.y * kSide, (last.y + 1) * kSide}) {
       for (const int x : {first_.x * kSide, (last.x + 1) * kSide}) {
@@ -52,16 +55,20 @@ class Layer {
 
   const Box& box() const { return box_; }
 
-  /// The evidence of the cell that holds a point of the map; null: none.
-  const CellEvidence* at(const TPoint2D& in_map) const {
+  /// The evidence of the cell that holds a point of the map, and whether something moved there.
+  struct Evidence {
+    const CellEvidence* bands = nullptr;  ///< null: none
+    bool doubted = false;
+  };
+  Evidence at(const TPoint2D& in_map) const {
     constexpr int kSide = EvidencePatch::kTileSide;
     const TPoint2D p = maps::transform(patch_from_map_, in_map);
     const int x = static_cast<int>(std::floor(p.x / resolution_m_)) - first_.x * kSide;
     const int y = static_cast<int>(std::floor(p.y / resolution_m_)) - first_.y * kSide;
-    if (x < 0 || y < 0 || x >= across_ * kSide || y >= down_ * kSide) return nullptr;
-    const auto* tile = tiles_[static_cast<std::size_t>((y / kSide) * across_ + x / kSide)];
-    if (tile == nullptr) return nullptr;
-    return &(*tile)[static_cast<std::size_t>((y % kSide) * kSide + x % kSide)];
+    if (x < 0 || y < 0 || x >= across_ * kSide || y >= down_ * kSide) return {};
+    const LaidTile& laid = tiles_[static_cast<std::size_t>((y / kSide) * across_ + x / kSide)];
+    if (laid.tile == nullptr) return {};
+    return {&(*laid.tile)[static_cast<std::size_t>((y % kSide) * kSide + x % kSide)], laid.doubted};
   }
 
  private:
@@ -69,7 +76,11 @@ class Layer {
   double resolution_m_;
   EvidencePatch::TileIndex first_{};
   int across_ = 0, down_ = 0;
-  std::vector<const EvidencePatch::Tile*> tiles_;
+  struct LaidTile {
+    const EvidencePatch::Tile* tile = nullptr;
+    bool doubted = false;
+  };
+  std::vector<LaidTile> tiles_;
   Box box_;
 };
 
@@ -95,11 +106,14 @@ maps::GridGeometry geometry_of(const std::vector<Layer>& layers, double resoluti
   return g;
 }
 
-using BandSums = std::array<std::int32_t, kHeightBands>;
+struct CellSums {
+  std::array<std::int32_t, kHeightBands> bands{};
+  bool doubted = false;
+};
 
 /// Adds one layer to rows [y0, y1) of the grid.
 void add_layer(const Layer& layer, const maps::GridGeometry& g, int y0, int y1,
-               std::vector<BandSums>& sums) {
+               std::vector<CellSums>& sums) {
   const double r = g.resolution_m;
   const auto cell = [&](double at, double origin) {
     return static_cast<int>(std::floor((at - origin) / r));
@@ -110,11 +124,12 @@ void add_layer(const Layer& layer, const maps::GridGeometry& g, int y0, int y1,
   const int y_end = std::min(y1, cell(layer.box().y1, g.origin.y) + 1);
   for (int y = y_begin; y < y_end; ++y) {
     for (int x = x_begin; x < x_end; ++x) {
-      const CellEvidence* e = layer.at(g.center_of({x, y}));
-      if (e == nullptr) continue;
-      BandSums& sum = sums[static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(g.width) +
+      const Layer::Evidence e = layer.at(g.center_of({x, y}));
+      if (e.bands == nullptr) continue;
+      CellSums& sum = sums[static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(g.width) +
                            static_cast<std::size_t>(x)];
-      for (std::size_t b = 0; b < sum.size(); ++b) sum[b] += (*e)[b];
+      for (std::size_t b = 0; b < sum.bands.size(); ++b) sum.bands[b] += (*e.bands)[b];
+      sum.doubted = sum.doubted || e.doubted;
     }
   }
 }
@@ -124,9 +139,11 @@ std::int8_t percent(double steps) {
   return static_cast<std::int8_t>(std::lround(100.0 * p));
 }
 
-std::int8_t decide(const BandSums& sums, CellBands& bands) {
+std::int8_t decide(const CellSums& cell, CellBands& bands) {
+  const auto& sums = cell.bands;
+  const int enough = cell.doubted ? kOccupiedAmidMotionSteps : kOccupiedSteps;
   for (std::size_t b = 0; b < sums.size(); ++b) {
-    if (sums[b] >= kOccupiedSteps) bands.occupied |= static_cast<std::uint16_t>(1U << b);
+    if (sums[b] >= enough) bands.occupied |= static_cast<std::uint16_t>(1U << b);
     if (sums[b] <= kFreeSteps) bands.free |= static_cast<std::uint16_t>(1U << b);
   }
   // What is decided lies beyond map_server's thresholds (0.65 and 0.196), however little evidence
@@ -148,10 +165,10 @@ maps::OccupancyGrid render_grid(const std::vector<PlacedPatch>& patches, const G
   maps::OccupancyGrid grid(geometry_of(layers, config.grid_resolution_m));
   const maps::GridGeometry& g = grid.geometry;
   std::vector<CellBands> bands(g.size());
-  std::vector<BandSums> sums;
+  std::vector<CellSums> sums;
   for (int y0 = 0; y0 < g.height; y0 += kStripRows) {
     const int y1 = std::min(g.height, y0 + kStripRows);
-    sums.assign(static_cast<std::size_t>(y1 - y0) * static_cast<std::size_t>(g.width), BandSums{});
+    sums.assign(static_cast<std::size_t>(y1 - y0) * static_cast<std::size_t>(g.width), CellSums{});
     for (const Layer& layer : layers) add_layer(layer, g, y0, y1, sums);
     const std::size_t first = g.index_of({0, y0});
     for (std::size_t i = 0; i < sums.size(); ++i) {

@@ -100,10 +100,19 @@ void RayVoter::follow(const CellRay& ray, float from, float to, int weight) {
   }
 }
 
+bool RayVoter::is_obstacle_hit(const CellRay& ray) const {
+  const float height = ray.low + ray.end * ray.slope;
+  return height >= 0.0f && height < kHalfBands &&
+         ray.end * config_.grid_resolution_m <= config_.mapping_range_m;
+}
+
+maps::Cell RayVoter::end_cell(const CellRay& ray) const {
+  return {corner_.x + static_cast<int>(ray.x + ray.end * ray.dx),
+          corner_.y + static_cast<int>(ray.y + ray.end * ray.dy)};
+}
+
 void RayVoter::count_hit(const CellRay& ray) {
   const float height = ray.low + ray.end * ray.slope;
-  if (height < 0.0f || height >= kHalfBands) return;
-  if (ray.end * config_.grid_resolution_m > config_.mapping_range_m) return;
   const auto band = static_cast<std::size_t>(height) / 2;
   count(counts_[cell_at(ray, ray.end) + band].hits, 1);
 }
@@ -167,7 +176,12 @@ void RayVoter::vote(const DepthScan& scan, const TPose2D& patch_from_level, Evid
     const CellRay ray = cell_ray(scan, scan.rays[i]);
     if (i < static_cast<std::size_t>(scan.fine_from)) follow(ray, 0.0f, crowded, kCrowd);
     follow(ray, crowded, reach, 1);
-    count_hit(ray);
+    if (!is_obstacle_hit(ray)) continue;
+    if (scan.rays[i].moving) {
+      patch.doubt(end_cell(ray));
+    } else {
+      count_hit(ray);
+    }
   }
   cast_votes(patch);
 }

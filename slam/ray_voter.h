@@ -41,7 +41,9 @@ class RayVoter {
   void open_window(const DepthScan& scan, const TPose2D& patch_from_level);
   CellRay cell_ray(const DepthScan& scan, const ScanRay& ray) const;
   void follow(const CellRay& ray, float from, float to, int weight);
+  bool is_obstacle_hit(const CellRay& ray) const;
   void count_hit(const CellRay& ray);
+  maps::Cell end_cell(const CellRay& ray) const;
   std::size_t cell_at(const CellRay& ray, float r) const;
   void cast_votes(EvidencePatch& patch) const;
   int vote_of(const Counts& counts, double range_m) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "slam/grid_mapper.h"
 #include "slam/keyframe_codec.h"
@@ -34,7 +35,8 @@ Surroundings::Surroundings(const SlamConfig& config, const CameraModel& camera,
       on_floor_(on_floor),
       filter_(DepthFilterConfig{}),
       scanner_(camera, config.depth),
-      voter_(config.grid, config.depth) {}
+      voter_(config.grid, config.depth),
+      watch_(camera, config.depth) {}
 
 /// The patch of a keyframe close by that is tied to this one by what both see; or the one in use.
 std::size_t Surroundings::nearby_patch(const LandmarkMap& map, int keyframe) const {
@@ -71,32 +73,68 @@ std::size_t Surroundings::patch_of(const LandmarkMap& map, int keyframe) {
   return patch;
 }
 
-/// Heights count from the floor that the camera sees. What a scan shows of it corrects the next
-/// one, and the scan itself while much is still to be learnt.
-DepthScan Surroundings::scan_above_floor(const CameraFrame& frame) {
-  // Looks are taken on the move, where nothing may be averaged over time.
-  const cv::Mat depth = filter_.apply(frame.depth, false);
-  const auto scan = [&] {
-    return scanner_.scan(depth, frame.depth_unit_m, floor_.corrected(base_from_camera_));
-  };
-  DepthScan out = scan();
-  return floor_.update(out) ? scan() : out;
+/// Heights count from the floor that the camera sees.
+void Surroundings::follow_floor(const DepthScanner::Samples& samples, double depth_unit_m) {
+  floor_.update(scanner_.scan(samples, depth_unit_m, floor_.corrected(base_from_camera_)));
 }
 
 void Surroundings::look(const CameraFrame& frame, const LandmarkMap& map, int keyframe,
                         const Se3& pose) {
   if (!on_floor_ || frame.depth.empty() || keyframe < 0) return;
+  AnchoredView view{
+      frame.time_s, keyframe,
+      from_planar(maps::compose(maps::inverse(to_planar(map.keyframe(keyframe).map_from_base)),
+                                to_planar(pose))),
+      floor_.corrected(base_from_camera_)};
+  watch_.remember(frame.depth, frame.depth_unit_m, view);
   const bool moved =
       last_keyframe_ < 0 || keyframe_spacing(last_pose_, pose, config_.tracking) >= kLookSpacing;
-  if (!moved) return;
-  AnchoredPatch& patch = patches_[patch_of(map, keyframe)];
-  last_pose_ = pose;
-  last_keyframe_ = keyframe;
-  const TPose2D map_from_patch = maps::compose(
-      to_planar(map.keyframe(patch.keyframe).map_from_base), patch.keyframe_from_patch);
-  const TPose2D patch_from_level = maps::compose(maps::inverse(map_from_patch), to_planar(pose));
-  voter_.vote(scan_above_floor(frame), patch_from_level, patch.evidence);
-  voter_.vote_driven(maps::position_of(patch_from_level), kBodyRadiusM, patch.evidence);
+  if (moved) {
+    const std::size_t patch = patch_of(map, keyframe);
+    last_pose_ = pose;
+    last_keyframe_ = keyframe;
+    const AnchoredPatch& p = patches_[patch];
+    const TPose2D map_from_patch =
+        maps::compose(to_planar(map.keyframe(p.keyframe).map_from_base), p.keyframe_from_patch);
+    const TPose2D patch_from_level = maps::compose(maps::inverse(map_from_patch), to_planar(pose));
+    // Looks are taken on the move, where nothing may be averaged over time.
+    DepthScanner::Samples samples = scanner_.sample(filter_.apply(frame.depth, false));
+    follow_floor(samples, frame.depth_unit_m);
+    view.level_from_camera = floor_.corrected(base_from_camera_);
+    pending_.push_back({view, patch, patch_from_level, std::move(samples), frame.depth_unit_m});
+  }
+  cast_votes_until(frame.time_s - MotionWatch::kHorizonS, map);
+}
+
+void Surroundings::cast_votes_until(double time_s, const LandmarkMap& map) {
+  while (!pending_.empty() && pending_.front().view.time_s <= time_s) {
+    PendingLook& look = pending_.front();
+    EvidencePatch& evidence = patches_[look.patch].evidence;
+    DepthScan scan = scanner_.scan(look.samples, look.depth_unit_m, look.view.level_from_camera);
+    watch_.mark_moving(look.view, map, scan);
+    voter_.vote(scan, look.patch_from_level, evidence);
+    voter_.vote_driven(maps::position_of(look.patch_from_level), kBodyRadiusM, evidence);
+    pending_.pop_front();
+  }
+}
+
+void Surroundings::hand_over(int from, int to, const LandmarkMap& map) {
+  const TPose2D to_from_from =
+      maps::compose(maps::inverse(to_planar(map.keyframe(to).map_from_base)),
+                    to_planar(map.keyframe(from).map_from_base));
+  for (AnchoredPatch& p : patches_) {
+    if (p.keyframe != from) continue;
+    p.keyframe = to;
+    p.keyframe_from_patch = maps::compose(to_from_from, p.keyframe_from_patch);
+  }
+  const auto known = patch_of_keyframe_.find(from);
+  if (known != patch_of_keyframe_.end()) {
+    patch_of_keyframe_.try_emplace(to, known->second);
+    patch_of_keyframe_.erase(known);
+  }
+  if (last_keyframe_ == from) last_keyframe_ = to;
+  for (PendingLook& look : pending_) look.view.reanchor(from, to, from_planar(to_from_from));
+  watch_.reanchor(from, to, from_planar(to_from_from));
 }
 
 /// For a camera that nobody knows the height of: evidence from the stored keyframes, one patch
@@ -117,6 +155,7 @@ void Surroundings::add_keyframes(const LandmarkMap& map) {
 
 maps::OccupancyGrid Surroundings::render(const LandmarkMap& map) {
   if (!on_floor_) add_keyframes(map);
+  cast_votes_until(std::numeric_limits<double>::infinity(), map);
   std::vector<PlacedPatch> placed;
   for (const AnchoredPatch& p : patches_) {
     placed.push_back(
@@ -127,7 +166,8 @@ maps::OccupancyGrid Surroundings::render(const LandmarkMap& map) {
 }
 
 std::size_t Surroundings::memory_bytes() const {
-  std::size_t sum = 0;
+  std::size_t sum = watch_.memory_bytes();
+  for (const PendingLook& p : pending_) sum += p.samples.depths.size() * sizeof(std::uint16_t);
   for (const AnchoredPatch& p : patches_) sum += p.evidence.memory_bytes();
   return sum;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // What the depth camera saw of the ground on the way, kept as evidence that follows the keyframes.
 
+#include <deque>
 #include <map>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "slam/evidence_patch.h"
 #include "slam/floor_tracker.h"
 #include "slam/landmark_map.h"
+#include "slam/motion_watch.h"
 #include "slam/ray_voter.h"
 
 namespace rovigo::slam {
@@ -28,6 +30,10 @@ class Surroundings {
   /// Adds what a frame shows, relative to `keyframe`, whenever the view has changed a little.
   void look(const CameraFrame& frame, const LandmarkMap& map, int keyframe, const Se3& pose);
 
+  /// Keyframe `from` is about to be deleted: what hangs on it hangs on `to` from now on, where it
+  /// lies now. Call it while both still have their poses.
+  void hand_over(int from, int to, const LandmarkMap& map);
+
   /// The grid, from the poses as the keyframes are now.
   maps::OccupancyGrid render(const LandmarkMap& map);
 
@@ -43,10 +49,20 @@ class Surroundings {
     EvidencePatch evidence;
   };
 
+  /// A scan that waits until what came after it has told what of it moved.
+  struct PendingLook {
+    AnchoredView view;
+    std::size_t patch = 0;
+    TPose2D patch_from_level;
+    DepthScanner::Samples samples;
+    double depth_unit_m = 0.0;
+  };
+
+  void cast_votes_until(double time_s, const LandmarkMap& map);
   std::size_t patch_of(const LandmarkMap& map, int keyframe);
   std::size_t nearby_patch(const LandmarkMap& map, int keyframe) const;
   void add_keyframes(const LandmarkMap& map);
-  DepthScan scan_above_floor(const CameraFrame& frame);
+  void follow_floor(const DepthScanner::Samples& samples, double depth_unit_m);
 
   SlamConfig config_;
   Se3 base_from_camera_;
@@ -55,6 +71,8 @@ class Surroundings {
   DepthScanner scanner_;
   RayVoter voter_;
   FloorTracker floor_;
+  MotionWatch watch_;
+  std::deque<PendingLook> pending_;
   std::vector<AnchoredPatch> patches_;
   std::map<int, std::size_t> patch_of_keyframe_;
   int last_keyframe_ = -1;
