@@ -43,6 +43,8 @@ constexpr double kFeltSigmaMS2 = 0.03;  // what shaking leaves of the mean over 
 constexpr double kMinSlipMS = 0.1;
 constexpr double kCarriedRad = 0.15;  // turned so far on standing wheels: carried
 constexpr double kMinTurnToCalibrate = 0.15;
+constexpr double kMostScaleSigmas = 4.0;
+constexpr double kLongestSlideS = 0.5;  // braking at 2 m/s^2 from 1 m/s
 
 constexpr std::array<int, 3> kInPlane = {S::kPosition, S::kPosition + 1, S::kAttitude + 2};
 
@@ -285,7 +287,8 @@ double InertialFilter::judge_both_slipping(const WheelStep& wheels, double gripp
   const bool felt = accelerometer_time_s_ && time_s_ - *accelerometer_time_s_ < kGyroTimeoutS;
   const double scale = 1.0 + state_.speed_scale;
   const double wheel_speed = gripped_m / wheels.dt * scale;
-  if (!felt || wheels.dt > kGyroTimeoutS) {
+  // A slide on blocked wheels is soon over: a body that moves for longer above them is carried.
+  if (!felt || wheels.dt > kGyroTimeoutS || resting_s_ > kLongestSlideS) {
     both_slip_ = false;
     felt_speed_m_s_ = wheel_speed;
     return gripped_m;
@@ -424,6 +427,12 @@ void InertialFilter::correct(const PlanarInformation& look, double floor_m, doub
   const S::Vector error = gain * (h * away - g);
   if (!error.allFinite() || !gain.allFinite()) return;
   state_.inject(error);
+  // A jump of the pose (carried, wrongly recognised) must not leave wheels that no rover has.
+  const auto within = [](double scale, double sigma) {
+    return std::clamp(scale, -kMostScaleSigmas * sigma, kMostScaleSigmas * sigma);
+  };
+  state_.speed_scale = within(state_.speed_scale, config_.wheel_speed_scale_sigma);
+  state_.turn_scale = within(state_.turn_scale, config_.wheel_turn_scale_sigma);
   state_.map_from_base = normalized(state_.map_from_base);
   p -= gain * h * columns.transpose();
   p = 0.5 * (p + p.transpose()).eval();
