@@ -137,10 +137,10 @@ void score_events(const SlamRun& run, const std::vector<Judged>& answers, double
 }
 
 /// Where the camera truly was, thinned out: neighbouring frames see the same ground.
-std::vector<View> true_views(const SlamRun& run, const Truth& truth) {
+std::vector<maps::View> true_views(const SlamRun& run, const Truth& truth) {
   constexpr std::size_t kEvery = 5;
   const mrpt::poses::CPose3D world_from_map(run.map.metadata.simulation->world_from_map);
-  std::vector<View> views;
+  std::vector<maps::View> views;
   for (std::size_t i = 0; i < truth.poses.size(); i += kEvery) {
     const auto world_from_camera =
         world_from_map + truth.poses[i].pose + run.map.metadata.base_from_camera;
@@ -152,7 +152,7 @@ std::vector<View> true_views(const SlamRun& run, const Truth& truth) {
   return views;
 }
 
-FieldOfView field_of(const maps::MapMetadata& map, const sim::Scenario& scenario) {
+maps::FieldOfView field_of(const maps::MapMetadata& map, const sim::Scenario& scenario) {
   const mrpt::img::TCamera& camera = map.camera;
   const double steepest = scenario.camera.max_incidence_deg * maps::kPi / 180.0;
   return {std::atan2(camera.cx(), camera.fx()),
@@ -173,8 +173,8 @@ void score_grid(const SlamRun& run, const Truth& all_truth, const sim::Scenario&
   score.recall_2 = within_2.recall;
   score.free_iou = within_2.free_iou;
   const auto in_view =
-      cells_in_view(truth, true_views(run, all_truth), field_of(run.map.metadata, scenario));
-  score.free_iou_in_view = free_iou_in_view(run.map.grid, truth, truth_from_map, in_view);
+      maps::cells_in_view(truth, true_views(run, all_truth), field_of(run.map.metadata, scenario));
+  score.free_iou_in_view = maps::free_iou_in_view(run.map.grid, truth, truth_from_map, in_view);
   score.ghost_cells = ghost_cells(run.map.grid, truth, truth_from_map);
   const sim::World world = app::open_world(simulation.world);
   score.low_table_share = low_table_share(run.map.grid, truth, truth_from_map, world);
