@@ -11,6 +11,8 @@
 #include "slam/camera_frame.h"
 #include "slam/camera_model.h"
 #include "slam/grid_match.h"
+#include "slam/imu_reading.h"
+#include "slam/inertial_filter.h"
 #include "slam/recording/images.h"
 #include "slam/se3.h"
 
@@ -33,7 +35,7 @@ struct GridLocalizer::Impl {
   CameraModel camera;
   Se3 base_from_camera;
   SignedDistanceField field;
-  DeadReckoning motion;
+  InertialFilter motion;
   double last_agreement_s = 0.0;
   bool started = false;
 
@@ -67,14 +69,10 @@ struct GridLocalizer::Impl {
     if (const auto* scan = dynamic_cast<const mrpt::obs::CObservation3DRangeScan*>(&observation)) {
       look(time_s, *scan);
     } else if (const auto* imu = dynamic_cast<const mrpt::obs::CObservationIMU*>(&observation)) {
-      if (!imu->has(mrpt::obs::IMU_WX) || !imu->has(mrpt::obs::IMU_WY) ||
-          !imu->has(mrpt::obs::IMU_WZ)) {
-        return;
-      }
-      const Eigen::Vector3d rate(imu->get(mrpt::obs::IMU_WX), imu->get(mrpt::obs::IMU_WY),
-                                 imu->get(mrpt::obs::IMU_WZ));
-      if (rate.allFinite()) {
-        motion.add_gyro(time_s, (from_mrpt(imu->sensorPose).rotation * rate).z());
+      const ImuReading reading = imu_in_base(*imu);
+      if (reading.rate_rad_s) motion.add_gyro(time_s, *reading.rate_rad_s);
+      if (reading.specific_force_m_s2) {
+        motion.add_accelerometer(time_s, *reading.specific_force_m_s2);
       }
     } else if (const auto* wheels =
                    dynamic_cast<const mrpt::obs::CObservationOdometry*>(&observation)) {

@@ -8,8 +8,9 @@
 
 #include "maps/occupancy_grid.h"
 #include "slam/camera_model.h"
-#include "slam/dead_reckoning.h"
+#include "slam/planar_information.h"
 #include "slam/se3.h"
+#include "slam/slam_config.h"
 
 namespace rovigo::slam {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "slam/camera_frame.h"
+#include "slam/imu_reading.h"
 
 namespace rovigo::slam {
 
@@ -82,18 +83,18 @@ MotionModel::MotionModel(const SlamConfig& config, const Rig& rig)
       links_(config.dead_reckoning) {}
 
 void MotionModel::add(const mrpt::obs::CObservationIMU& imu) {
-  using namespace mrpt::obs;
-  if (!imu.has(IMU_WX) || !imu.has(IMU_WY) || !imu.has(IMU_WZ)) return;
-  const Eigen::Vector3d rate_sensor(imu.get(IMU_WX), imu.get(IMU_WY), imu.get(IMU_WZ));
-  const Eigen::Vector3d rate = from_mrpt(imu.sensorPose).rotation * rate_sensor;
-  if (!rate.allFinite()) return;
+  const ImuReading reading = imu_in_base(imu);
   const double time_s = time_of(imu);
   if (planar_) {
-    planar_filter_.add_gyro(time_s, rate.z());
+    if (reading.rate_rad_s) planar_filter_.add_gyro(time_s, *reading.rate_rad_s);
+    if (reading.specific_force_m_s2) {
+      planar_filter_.add_accelerometer(time_s, *reading.specific_force_m_s2);
+    }
     return;
   }
+  if (!reading.rate_rad_s) return;
   const double dt = has_gyro_ ? std::clamp(time_s - gyro_time_s_, 0.0, 0.1) : 0.0;
-  gyro_turn_ = gyro_turn_ * so3_exp(rate * dt);
+  gyro_turn_ = gyro_turn_ * so3_exp(*reading.rate_rad_s * dt);
   gyro_time_s_ = time_s;
   has_gyro_ = true;
 }

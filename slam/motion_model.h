@@ -1,11 +1,11 @@
 #pragma once
-// What is believed about the rover's pose before the camera looks: wheels and gyro on the floor,
+// What is believed about the rover's pose before the camera looks: wheels and IMU on the floor,
 // or constant velocity for a camera in free motion.
 
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationOdometry.h>
 
-#include "slam/dead_reckoning.h"
+#include "slam/inertial_filter.h"
 #include "slam/pose_optimizer.h"
 #include "slam/rig.h"
 
@@ -40,7 +40,7 @@ class MotionModel {
              double sigma_heading_rad);
   void shift(const Se3& new_map_from_old_map);
 
-  const DeadReckoning& dead_reckoning() const { return planar_filter_; }
+  const InertialFilter& dead_reckoning() const { return planar_filter_; }
   /// The body turned while its wheels stood, and no look has confirmed a pose since.
   bool carried() const { return planar_ && planar_filter_.carried(); }
 
@@ -55,7 +55,7 @@ class MotionModel {
 
   TrackingConfig tracking_;
   bool planar_ = false;
-  DeadReckoning planar_filter_;
+  InertialFilter planar_filter_;
   MotionLinks links_;
 
   // Free motion.

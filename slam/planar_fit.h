@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "slam/dead_reckoning.h"
+#include "slam/planar_information.h"
 
 namespace rovigo::slam {
 

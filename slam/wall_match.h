@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "slam/camera_frame.h"
-#include "slam/dead_reckoning.h"
+#include "slam/planar_information.h"
 #include "slam/se3.h"
 
 namespace rovigo::slam {
