@@ -14,7 +14,7 @@ std::optional<Se3> BackEnd::add_newest(const std::vector<MotionLink>& links,
   const Se3 before = map_.keyframe(newest).map_from_base;
   if (!close_loop(map_, edges_, links, *loop)) return std::nullopt;
   ++loop_closures_;
-  share_certainty(map_.keyframe(loop->edge.from), map_.keyframe(newest));
+  share_certainty(loop->edge.from, map_);
   return map_.keyframe(newest).map_from_base * before.inverse();
 }
 

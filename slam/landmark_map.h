@@ -20,8 +20,9 @@ struct Keyframe {
   std::vector<int> landmark_of;  ///< per feature; -1: none
   maps::Blob color_jpeg;
   maps::Blob depth_png;
-  WallScan walls;                         ///< empty unless on a floor
-  double sigma_m = 0.0, sigma_rad = 0.0;  ///< against the map's first keyframe, along the chain
+  WallScan walls;  ///< empty unless on a floor
+  /// Of (x, y, yaw) in the map frame, against the map's first keyframe.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 
   /// A culled keyframe holds nothing any more but its place against another one, so that poses and
   /// evidence that hang on it follow the map.

@@ -122,11 +122,11 @@ MotionPrediction MotionModel::predict(double time_s) {
   if (planar_) {
     planar_filter_.advance_to(time_s);
     const TPose2D pose = planar_filter_.map_from_base();
-    const Eigen::Matrix3d covariance = planar_filter_.pose_covariance();
+    out.covariance = planar_filter_.pose_covariance();
     out.prior.map_from_base = from_planar(pose);
-    out.prior.information = planar_prior_information(covariance, pose.phi, tracking_);
-    out.sigma_position_m = std::sqrt(std::max(0.0, covariance(0, 0) + covariance(1, 1)));
-    out.sigma_heading_rad = std::sqrt(std::max(0.0, covariance(2, 2)));
+    out.prior.information = planar_prior_information(out.covariance, pose.phi, tracking_);
+    out.sigma_position_m = std::sqrt(std::max(0.0, out.covariance(0, 0) + out.covariance(1, 1)));
+    out.sigma_heading_rad = std::sqrt(std::max(0.0, out.covariance(2, 2)));
     out.turn_rate_rad_s = std::abs(planar_filter_.twist().omega);
     return out;
   }
@@ -136,6 +136,8 @@ MotionPrediction MotionModel::predict(double time_s) {
   out.sigma_position_m = tracking_.free_motion_sigma_m + 0.5 * unseen_s_;
   out.sigma_heading_rad =
       has_gyro_ ? 0.02 + 0.05 * (dt + unseen_s_) : 0.02 + 0.5 * dt + 1.0 * unseen_s_;
+  out.covariance.diagonal() << Eigen::Vector2d::Constant(0.5 * std::pow(out.sigma_position_m, 2)),
+      std::pow(out.sigma_heading_rad, 2);
   out.prior.information.diagonal().head<3>().setConstant(1.0 / std::pow(out.sigma_position_m, 2));
   out.prior.information.diagonal().tail<3>().setConstant(1.0 / std::pow(out.sigma_heading_rad, 2));
   return out;

@@ -13,7 +13,8 @@ namespace rovigo::slam {
 
 struct MotionPrediction {
   PosePrior6 prior;
-  double sigma_position_m = 0.0;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, yaw), map frame
+  double sigma_position_m = 0.0;                         ///< of both axes together
   double sigma_heading_rad = 0.0;
   double turn_rate_rad_s = 0.0;  ///< turning smears and shears images
 };

@@ -20,6 +20,7 @@
 #include "slam/tracker.h"
 #include "slam/tracking_health.h"
 #include "slam/trajectory_history.h"
+#include "slam/view_continuity.h"
 #include "slam/view_verdict.h"
 #include "slam/wall_ties.h"
 
@@ -43,6 +44,7 @@ struct Slam::Impl {
                                           : from_mrpt(base_from_optical({}))),
         map(settings, camera, base_from_camera),
         motion(settings, r),
+        continuity(camera, base_from_camera),
         back_end(settings, map, motion.planar()),
         recovery(settings, map, back_end.relocalizer(), motion, health),
         wall_ties(settings),
@@ -70,6 +72,7 @@ struct Slam::Impl {
   LandmarkMap map;
   MotionModel motion;
   TrackingHealth health;
+  ViewContinuity continuity;
   BackEnd back_end;
   Recovery recovery;
   WallTies wall_ties;
@@ -81,6 +84,7 @@ struct Slam::Impl {
   bool begun = false;
   double last_frame_s = 0.0;
   int anchor = -1;  ///< keyframe that poses are held against: last seen, or made
+  MapUncertainty uncertainty;
 };
 
 void Slam::Impl::begin(double time_s) {
@@ -144,6 +148,7 @@ Se3 Slam::Impl::believe(const CameraFrame& frame, const TrackResult& result) {
   const Se3 pose = motion.correct(frame.time_s, result.solution);
   recovery.sharpen(pose * predicted.inverse());
   anchor = local.reference_keyframe;
+  uncertainty.see(map.keyframe(anchor));
   remember_tracked(result);
   return result.solution.inliers < kFewInliers ? follow_walls(frame, pose) : pose;
 }
@@ -163,7 +168,8 @@ void Slam::Impl::judge(const CameraFrame& frame, bool tracked, const Se3& pose) 
   health.update({.time_s = frame.time_s,
                  .tracked = tracked,
                  .verdict = verdict,
-                 .carried = motion.carried()});
+                 .carried = motion.carried(),
+                 .continuous = continuity.follows(frame, pose) && motion.planar()});
   recovery.mend(history);
 }
 
@@ -181,9 +187,7 @@ void Slam::Impl::insert_keyframe(const CameraFrame& frame, FeatureSet features,
   Keyframe k = make_keyframe(frame, std::move(features), result.matches, pose);
   if (motion.planar()) k.walls = wall_ties.scan(frame, map);
   const bool blind = result.status != TrackStatus::kTracked;
-  if (anchor >= 0) {
-    spread_uncertainty(map.keyframe(anchor), motion.predict(frame.time_s), blind, k);
-  }
+  uncertainty.join(k, motion.predict(frame.time_s).covariance, blind);
   const int id = map.add_keyframe(std::move(k));
   motion.mark_keyframe(id, frame.time_s);
   if (wall_ties.seen()) wall_ties.tie(map, id, anchor, motion);
@@ -196,7 +200,10 @@ void Slam::Impl::insert_keyframe(const CameraFrame& frame, FeatureSet features,
 
   const MotionPrediction now = motion.predict(frame.time_s);
   const auto moved = back_end.add_newest(links(), {now.sigma_position_m, now.sigma_heading_rad});
-  if (moved) motion.shift(*moved);
+  if (moved) {
+    motion.shift(*moved);
+    uncertainty.see(map.keyframe(id));
+  }
   map.forget_unmatched(id);
   cull_keyframes();
 }
@@ -230,8 +237,7 @@ void Slam::Impl::remember_pose(double time_s, const Se3& pose, bool is_camera_fr
 }
 
 PoseEstimate Slam::Impl::report(double time_s, const Se3& pose) {
-  const Keyframe* reference = anchor >= 0 ? &map.keyframe(anchor) : nullptr;
-  return report_pose(pose, time_s, motion.predict(time_s), reference, health.state(),
+  return report_pose(pose, time_s, motion.predict(time_s), uncertainty.at(pose), health.state(),
                      time_s - last_frame_s, config.localizer);
 }
 

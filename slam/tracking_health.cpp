@@ -15,6 +15,7 @@ constexpr int kConfirmingFrames = 4;
 void TrackingHealth::update(const FrameEvidence& frame) {
   if (state_ == TrackingState::kTracking && !frame.tracked) doubted_since_s_ = frame.time_s;
   if (frame.tracked) {
+    broken_ = false;
     doubts_ = contradictions_ = 0;
     const bool must_confirm =
         state_ == TrackingState::kLost || state_ == TrackingState::kConfirming;
@@ -30,8 +31,14 @@ void TrackingHealth::update(const FrameEvidence& frame) {
   }
   state_ = TrackingState::kReckoning;
   const bool contradicts = frame.verdict == ViewVerdict::kContradicts;
-  if (frame.verdict == ViewVerdict::kAgrees) doubts_ = contradictions_ = 0;
-  if (contradicts || frame.verdict == ViewVerdict::kHidden) {
+  if (!frame.continuous) broken_ = true;
+  if (frame.verdict == ViewVerdict::kAgrees) {
+    broken_ = false;
+    doubts_ = contradictions_ = 0;
+  }
+  // In an unbroken view a landmark that should be there and is not was a ghost, or is behind a wall
+  // of a room that is being entered.
+  if (broken_ && (contradicts || frame.verdict == ViewVerdict::kHidden)) {
     if (doubts_++ == 0) hidden_since_s_ = frame.time_s;
     if (contradicts && contradictions_++ == 0) contradicted_since_s_ = frame.time_s;
   }

@@ -17,6 +17,8 @@ struct FrameEvidence {
   bool tracked = false;
   ViewVerdict verdict = ViewVerdict::kSilent;  ///< unless tracked
   bool carried = false;                        ///< the body turned while its wheels stood
+  /// Its depth goes on from the last frame's (ViewContinuity): nobody carried the rover in between.
+  bool continuous = false;
 };
 
 enum class TrackingState {
@@ -44,7 +46,8 @@ class TrackingHealth {
 
  private:
   TrackingState state_ = TrackingState::kReckoning;
-  int doubts_ = 0;  ///< frames in a row that hide or contradict what should be seen
+  bool broken_ = false;  ///< the view jumped since it was last known to be right
+  int doubts_ = 0;       ///< frames since then that hide or contradict what should be seen
   int contradictions_ = 0;
   double hidden_since_s_ = 0.0, contradicted_since_s_ = 0.0;
   double doubted_since_s_ = 0.0;

@@ -34,6 +34,11 @@ std::vector<Check> rover_checks(std::vector<Check> own) {
   constexpr double kAll = 0.999;  // "100%"
   own.push_back(at_least(&S::coverage, kAll));
   own.push_back(at_most(&S::wrong_frames, 0, 0));
+  // Honest is 1. One drive has one drift, which may be two or three sigmas by chance.
+  for (const auto nees : {&S::nees_position, &S::nees_heading}) {
+    own.push_back(at_most(nees, 9.0));
+    own.push_back({nees, Sense::kAtMost, 3.0, 9.0, false});
+  }
   own.push_back({&S::cpu_ms, Sense::kAtMost, 24.0, std::nullopt, false});
   own.push_back({&S::peak_mb, Sense::kAtMost, 300.0, 300.0, false});
   own.push_back({&S::first_pose_ms, Sense::kAtMost, 50.0, std::nullopt, false});

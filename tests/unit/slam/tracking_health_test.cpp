@@ -43,6 +43,29 @@ TEST(TrackingHealth, BlurWithTheRightDepthsIsNoContradiction) {
   EXPECT_TRUE(rover.health.is_trusted());
 }
 
+// A room entered backwards hides what was mapped from the door; nobody was carried anywhere.
+TEST(TrackingHealth, AnUnbrokenViewIsNeverLost) {
+  TrackingHealth health;
+  health.update({.time_s = 1.0, .tracked = true});
+  for (double t = 1.0 + kFrameS; t < 20.0; t += kFrameS) {
+    const auto verdict = t < 10.0 ? ViewVerdict::kHidden : ViewVerdict::kContradicts;
+    health.update({.time_s = t, .verdict = verdict, .continuous = true});
+    ASSERT_EQ(health.state(), TrackingState::kReckoning);
+    ASSERT_TRUE(health.is_trusted());
+  }
+}
+
+TEST(TrackingHealth, OneBreakInTheViewIsRemembered) {
+  TrackingHealth health;
+  health.update({.time_s = 1.0, .tracked = true});
+  health.update({.time_s = 1.0 + kFrameS, .verdict = ViewVerdict::kSilent, .continuous = false});
+  double t = 1.0 + 2 * kFrameS;
+  for (; t < 2.0; t += kFrameS) {
+    health.update({.time_s = t, .verdict = ViewVerdict::kContradicts, .continuous = true});
+  }
+  EXPECT_EQ(health.state(), TrackingState::kLost);
+}
+
 TEST(TrackingHealth, AnotherPlaceIsLostWithinASecond) {
   Rover rover;
   rover.sees(5, true);
