@@ -40,7 +40,7 @@ TEST(KeyframeCulling, RevisitsLeaveNoMoreKeyframesThanTheLatestAndAFew) {
 
 TEST(KeyframeCulling, AChainThatSeesSomethingNewAtEachStepIsKept) {
   std::vector<TPose2D> turning;
-  for (int i = 0; i < 30; ++i) turning.push_back({0, 0, 0.2 * i});
+  for (int i = 0; i < 20; ++i) turning.push_back({0, 0, 0.3 * i});
   Room room(0);
   std::mt19937_64 random(5);
   for (int i = 0; i < 600; ++i) {
@@ -50,7 +50,7 @@ TEST(KeyframeCulling, AChainThatSeesSomethingNewAtEachStepIsKept) {
   }
   LandmarkMap map = room_map(room, turning, turning, 0.3, 0.005);
   cull_all(map);
-  EXPECT_EQ(map.living_keyframes(), 30);
+  EXPECT_EQ(map.living_keyframes(), 20);
 }
 
 TEST(KeyframeCulling, WhatHangsOnACulledKeyframeFollowsItsHost) {
