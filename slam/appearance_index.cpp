@@ -36,49 +36,79 @@ std::uint32_t AppearanceIndex::key(const Descriptor& d, int table) const {
   return k;
 }
 
-void AppearanceIndex::add(int view, const std::vector<Descriptor>& descriptors) {
+std::vector<int> AppearanceIndex::add(int view, const std::vector<Descriptor>& descriptors) {
   const auto v = static_cast<std::size_t>(view);
-  if (view_size_.size() <= v) view_size_.resize(v + 1, 0);
+  if (in_view_.size() <= v) in_view_.resize(v + 1);
+  std::vector<int> numbers;
+  numbers.reserve(descriptors.size());
   for (const Descriptor& d : descriptors) {
-    const int index = static_cast<int>(descriptors_.size());
-    descriptors_.push_back(d);
-    ++view_size_[v];
+    if (free_.empty()) {
+      free_.push_back(static_cast<int>(descriptors_.size()));
+      if (descriptors_.size() == descriptors_.capacity()) {
+        descriptors_.reserve(descriptors_.size() + descriptors_.size() / 8 + 1024);
+      }
+      descriptors_.emplace_back();
+      view_of_.push_back(-1);
+    }
+    const int number = free_.back();
+    free_.pop_back();
+    descriptors_[static_cast<std::size_t>(number)] = d;
+    view_of_[static_cast<std::size_t>(number)] = view;
+    numbers.push_back(number);
     for (int t = 0; t < kTables; ++t) {
-      tables_[static_cast<std::size_t>(t)][key(d, t)].push_back({view, index});
+      tables_[static_cast<std::size_t>(t)][key(d, t)].push_back(number);
     }
   }
+  in_view_[v].insert(in_view_[v].end(), numbers.begin(), numbers.end());
+  return numbers;
+}
+
+void AppearanceIndex::remove(int view) {
+  if (static_cast<std::size_t>(view) >= in_view_.size()) return;
+  std::vector<int>& numbers = in_view_[static_cast<std::size_t>(view)];
+  for (const int number : numbers) {
+    const Descriptor& d = descriptors_[static_cast<std::size_t>(number)];
+    for (int t = 0; t < kTables; ++t) {
+      std::erase(tables_[static_cast<std::size_t>(t)][key(d, t)], number);
+    }
+    free_.push_back(number);
+  }
+  numbers = {};
 }
 
 std::vector<AppearanceScore> AppearanceIndex::query(const std::vector<Descriptor>& descriptors,
                                                     std::size_t most) const {
-  std::vector<double> votes(view_size_.size(), 0.0);
-  std::vector<int> voted_for(view_size_.size(), -1);  // each descriptor votes once for a view
+  std::vector<double> votes(in_view_.size(), 0.0);
+  std::vector<int> voted_for(in_view_.size(), -1);  // each descriptor votes once for a view
   std::vector<int> found;
+  const auto views = std::count_if(in_view_.begin(), in_view_.end(),
+                                   [](const auto& numbers) { return !numbers.empty(); });
   for (std::size_t q = 0; q < descriptors.size(); ++q) {
     found.clear();
     for (int t = 0; t < kTables; ++t) {
       const auto& bucket = tables_[static_cast<std::size_t>(t)][key(descriptors[q], t)];
       if (bucket.size() > kCrowded) continue;
-      for (const Entry& e : bucket) {
-        const auto view = static_cast<std::size_t>(e.view);
+      for (const int number : bucket) {
+        const int view_number = view_of_[static_cast<std::size_t>(number)];
+        const auto view = static_cast<std::size_t>(view_number);
         if (voted_for[view] == static_cast<int>(q)) continue;
-        const Descriptor& d = descriptors_[static_cast<std::size_t>(e.descriptor)];
+        const Descriptor& d = descriptors_[static_cast<std::size_t>(number)];
         if (hamming_distance(descriptors[q], d) > kSimilarBits) continue;
         voted_for[view] = static_cast<int>(q);
-        found.push_back(e.view);
+        found.push_back(view_number);
       }
     }
     if (found.empty()) continue;
     // What many views show says little about which one this is.
     const double rarity =
-        std::log(1.0 + static_cast<double>(view_size_.size()) / static_cast<double>(found.size()));
+        std::log(1.0 + static_cast<double>(views) / static_cast<double>(found.size()));
     for (const int view : found) votes[static_cast<std::size_t>(view)] += rarity;
   }
   std::vector<AppearanceScore> out;
   for (std::size_t v = 0; v < votes.size(); ++v) {
     if (votes[v] <= 0) continue;
     const double norm =
-        std::sqrt(static_cast<double>(view_size_[v]) *
+        std::sqrt(static_cast<double>(in_view_[v].size()) *
                   static_cast<double>(std::max<std::size_t>(1, descriptors.size())));
     out.push_back({static_cast<int>(v), votes[v] / norm});
   }
@@ -91,9 +121,9 @@ std::vector<AppearanceScore> AppearanceIndex::query(const std::vector<Descriptor
 std::vector<int> AppearanceIndex::similar(const Descriptor& descriptor, int max_bits) const {
   std::vector<int> out;
   for (int t = 0; t < kTables; ++t) {
-    for (const Entry& e : tables_[static_cast<std::size_t>(t)][key(descriptor, t)]) {
-      const Descriptor& d = descriptors_[static_cast<std::size_t>(e.descriptor)];
-      if (hamming_distance(descriptor, d) <= max_bits) out.push_back(e.descriptor);
+    for (const int number : tables_[static_cast<std::size_t>(t)][key(descriptor, t)]) {
+      const Descriptor& d = descriptors_[static_cast<std::size_t>(number)];
+      if (hamming_distance(descriptor, d) <= max_bits) out.push_back(number);
     }
   }
   return out;

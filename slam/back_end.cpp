@@ -18,6 +18,11 @@ std::optional<Se3> BackEnd::add_newest(const std::vector<MotionLink>& links,
   return map_.keyframe(newest).map_from_base * before.inverse();
 }
 
+void BackEnd::cull(const Culling& culling) {
+  rehang_edges(map_, culling, edges_);
+  loops_.remove(culling.keyframe);
+}
+
 void BackEnd::adjust_everything(const std::vector<MotionLink>& links) {
   constexpr int kPasses = 2;  // the second without the sightings the first found wanting
   constexpr int kIterations = 8;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "slam/keyframe_culling.h"
 #include "slam/landmark_map.h"
 #include "slam/loop_closer.h"
 
@@ -20,6 +21,12 @@ class BackEnd {
   /// (new_map_from_old_map). `links`: everything that ties keyframes but corners.
   std::optional<Se3> add_newest(const std::vector<MotionLink>& links,
                                 const LoopUncertainty& uncertainty);
+
+  /// A keyframe goes: loops and neighbours hang on its host, and it is not recognised any more.
+  void cull(const Culling& culling);
+
+  /// Nothing will be recognised from now on: the index of places is let go of.
+  void forget_places() { loops_.forget_places(); }
 
   /// The last word on all poses: everything seen, all at once.
   void adjust_everything(const std::vector<MotionLink>& links);

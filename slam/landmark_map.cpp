@@ -11,6 +11,12 @@ namespace {
 
 constexpr double kPointFloorM = 0.002;  // no landmark is known better than this
 
+/// Room for a little more, not twice as much: landmarks are the largest list there is.
+template <class T>
+void grow_gently(std::vector<T>& list) {
+  if (list.size() == list.capacity()) list.reserve(list.size() + list.size() / 8 + 1024);
+}
+
 std::vector<std::pair<int, int>> ranked(const std::map<int, int>& votes, int min_votes) {
   std::vector<std::pair<int, int>> out;
   for (const auto& [id, n] : votes) {
@@ -74,6 +80,26 @@ void LandmarkMap::sight(int landmark_id, int keyframe_id, int feature) {
   l.sightings.push_back({keyframe_id, feature});
 }
 
+int LandmarkMap::new_landmark() {
+  if (free_landmarks_.empty()) {
+    grow_gently(landmarks_);
+    landmarks_.emplace_back();
+    return static_cast<int>(landmarks_.size()) - 1;
+  }
+  const int id = free_landmarks_.back();
+  free_landmarks_.pop_back();
+  landmark(id) = Landmark{};
+  return id;
+}
+
+void LandmarkMap::release(int id) {
+  Landmark& l = landmark(id);
+  if (!l.alive) return;
+  l.alive = false;
+  l.sightings = {};
+  free_landmarks_.push_back(id);
+}
+
 int LandmarkMap::add_keyframe(Keyframe added) {
   const int id = static_cast<int>(keyframes_.size());
   added.id = id;
@@ -84,8 +110,7 @@ int LandmarkMap::add_keyframe(Keyframe added) {
     const int feature = static_cast<int>(i);
     if (k.landmark_of[i] < 0) {
       if (k.features[i].depth_m <= 0) continue;
-      k.landmark_of[i] = static_cast<int>(landmarks_.size());
-      landmarks_.emplace_back();
+      k.landmark_of[i] = new_landmark();
     }
     sight(k.landmark_of[i], id, feature);
   }
@@ -106,7 +131,7 @@ void LandmarkMap::remove_sighting(int landmark_id, int index) {
   const Sighting s = l.sightings[static_cast<std::size_t>(index)];
   keyframe(s.keyframe).landmark_of[static_cast<std::size_t>(s.feature)] = -1;
   l.sightings.erase(l.sightings.begin() + index);
-  l.alive = !l.sightings.empty();
+  if (l.sightings.empty()) release(landmark_id);
 }
 
 void LandmarkMap::merge_landmarks(int from, int into) {
@@ -120,8 +145,57 @@ void LandmarkMap::merge_landmarks(int from, int into) {
     keyframe(s.keyframe).landmark_of[static_cast<std::size_t>(s.feature)] = seen_twice ? -1 : into;
     if (!seen_twice) b.sightings.push_back(s);
   }
-  a.sightings.clear();
-  a.alive = false;
+  release(from);
+}
+
+void LandmarkMap::forget_unmatched(int id) {
+  Keyframe& k = keyframe(id);
+  std::vector<Feature> features;
+  std::vector<Descriptor> descriptors;
+  std::vector<int> landmark_of;
+  for (std::size_t i = 0; i < k.features.size(); ++i) {
+    const int l = k.landmark_of[i];
+    if (l < 0) continue;
+    for (Sighting& s : landmark(l).sightings) {
+      if (s.keyframe == id) s.feature = static_cast<int>(features.size());
+    }
+    features.push_back(k.features[i]);
+    descriptors.push_back(k.features.descriptor(i));
+    landmark_of.push_back(l);
+  }
+  features.shrink_to_fit();
+  descriptors.shrink_to_fit();
+  landmark_of.shrink_to_fit();
+  k.features =
+      FeatureSet(std::move(features), std::move(descriptors), camera_.width(), camera_.height());
+  k.landmark_of = std::move(landmark_of);
+}
+
+void LandmarkMap::cull_keyframe(int id, int host) {
+  Keyframe& k = keyframe(id);
+  for (const int l : k.landmark_of) {
+    if (l < 0) continue;
+    const auto& seen = landmark(l).sightings;
+    const auto at = std::find_if(seen.begin(), seen.end(),
+                                 [id](const Sighting& s) { return s.keyframe == id; });
+    if (at != seen.end()) remove_sighting(l, static_cast<int>(at - seen.begin()));
+  }
+  k.features = {};
+  k.landmark_of = {};
+  k.color_jpeg = {};
+  k.depth_png = {};
+  k.walls = {};
+  k.host = host;
+  for (Keyframe& rider : keyframes_) {
+    if (rider.host != host && rider.host != id) continue;
+    rider.host = host;
+    rider.host_from_base = keyframe(host).map_from_base.inverse() * rider.map_from_base;
+  }
+}
+
+int LandmarkMap::living_keyframes() const {
+  return static_cast<int>(std::count_if(keyframes_.begin(), keyframes_.end(),
+                                        [](const Keyframe& k) { return !k.culled(); }));
 }
 
 std::vector<std::pair<int, int>> LandmarkMap::covisible(int id, int min_shared) const {
@@ -165,7 +239,10 @@ void LandmarkMap::move_keyframes(const std::vector<Se3>& map_from_base) {
     l.covariance = moved.rotation * l.covariance * moved.rotation.transpose();
   }
   for (std::size_t i = 0; i < keyframes_.size(); ++i) {
-    keyframes_[i].map_from_base = map_from_base[i];
+    const Keyframe& k = keyframes_[i];
+    keyframes_[i].map_from_base =
+        k.culled() ? map_from_base[static_cast<std::size_t>(k.host)] * k.host_from_base
+                   : map_from_base[i];
   }
 }
 
@@ -175,11 +252,10 @@ void LandmarkMap::cull(const std::vector<int>& candidates) {
     Landmark& l = landmark(id);
     if (!l.alive || l.sightings.size() > 2) continue;
     if (l.predicted < kFairTrial || l.tracked * 4 >= l.predicted) continue;
-    l.alive = false;
     for (const Sighting& s : l.sightings) {
       keyframe(s.keyframe).landmark_of[static_cast<std::size_t>(s.feature)] = -1;
     }
-    l.sightings.clear();
+    release(id);
   }
 }
 

@@ -23,6 +23,12 @@ struct Keyframe {
   WallScan walls;  ///< empty unless on a floor
   /// Of (x, y, yaw) in the map frame, against the map's first keyframe.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+
+  /// A culled keyframe holds nothing any more but its place against another one, so that poses and
+  /// evidence that hang on it follow the map.
+  int host = -1;
+  Se3 host_from_base;
+  bool culled() const { return host >= 0; }
 };
 
 struct Sighting {
@@ -68,6 +74,12 @@ class LandmarkMap {
   /// features with depth become new landmarks. Returns the keyframe's id.
   int add_keyframe(Keyframe keyframe);
 
+  /// Lets go of what a keyframe saw and no landmark came of; nothing asks for it later.
+  void forget_unmatched(int keyframe);
+
+  /// Lets go of all that a keyframe holds: its place follows `host` from now on.
+  void cull_keyframe(int keyframe, int host);
+
   /// Replaces everything by what a map file held.
   void restore(std::vector<Keyframe> keyframes, std::vector<Landmark> landmarks) {
     keyframes_ = std::move(keyframes);
@@ -81,6 +93,9 @@ class LandmarkMap {
 
   /// Everything `from` was seen as becomes a sighting of `into`; `from` is gone.
   void merge_landmarks(int from, int into);
+
+  /// Keyframes that were not culled.
+  int living_keyframes() const;
 
   /// Keyframes that see at least `min_shared` of this one's landmarks, most shared first.
   std::vector<std::pair<int, int>> covisible(int keyframe, int min_shared) const;
@@ -99,6 +114,8 @@ class LandmarkMap {
 
  private:
   void sight(int landmark, int keyframe, int feature);
+  int new_landmark();
+  void release(int landmark);
   Eigen::Vector3d measured_point(const Keyframe& k, int feature, Eigen::Matrix3d& covariance) const;
 
   SlamConfig config_;
@@ -106,6 +123,7 @@ class LandmarkMap {
   Se3 base_from_camera_;
   std::vector<Keyframe> keyframes_;
   std::vector<Landmark> landmarks_;
+  std::vector<int> free_landmarks_;  ///< dead ones, whose numbers serve again
 };
 
 }  // namespace rovigo::slam

@@ -27,6 +27,10 @@ class LoopCloser {
   /// Looks for the newest keyframe among the older ones, then adds it to the index.
   std::optional<LoopClosure> detect(const LandmarkMap& map, const LoopUncertainty& uncertainty);
 
+  /// A keyframe that was culled is not recognised any more.
+  void remove(int keyframe) { relocalizer_.remove(keyframe); }
+  void forget_places() { relocalizer_ = Relocalizer(); }
+
   const Relocalizer& relocalizer() const { return relocalizer_; }
 
  private:

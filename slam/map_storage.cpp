@@ -44,9 +44,12 @@ Se3 finite_pose(const maps::StoredKeyframe& stored) {
 
 }  // namespace
 
-std::vector<maps::StoredKeyframe> store_keyframes(const LandmarkMap& map) {
+std::vector<maps::StoredKeyframe> hand_over_keyframes(LandmarkMap& map) {
   std::vector<maps::StoredKeyframe> out;
-  for (const Keyframe& k : map.keyframes()) {
+  out.reserve(static_cast<std::size_t>(map.living_keyframes()));
+  for (std::size_t id = 0; id < map.keyframes().size(); ++id) {
+    Keyframe& k = map.keyframe(static_cast<int>(id));
+    if (k.culled()) continue;
     const Se3 camera_from_map = (k.map_from_base * map.base_from_camera()).inverse();
     std::vector<StoredFeature> features;
     for (std::size_t i = 0; i < k.features.size(); ++i) {
@@ -58,8 +61,8 @@ std::vector<maps::StoredKeyframe> store_keyframes(const LandmarkMap& map) {
     s.id = k.id;
     s.time_s = k.time_s;
     s.map_from_base = to_mrpt(k.map_from_base);
-    s.color_jpeg = k.color_jpeg;
-    s.depth_png = k.depth_png;
+    s.color_jpeg = std::move(k.color_jpeg);
+    s.depth_png = std::move(k.depth_png);
     s.features = encode_features(features);
     out.push_back(std::move(s));
   }

@@ -9,8 +9,9 @@
 
 namespace rovigo::slam {
 
-/// Keyframes with their living landmarks, as a map file holds them.
-std::vector<maps::StoredKeyframe> store_keyframes(const LandmarkMap& map);
+/// Keyframes with their living landmarks, as a map file holds them. Their images are moved out of
+/// the map: they are the greatest part of it.
+std::vector<maps::StoredKeyframe> hand_over_keyframes(LandmarkMap& map);
 
 /// The graph's edges in the map file's order of coordinates.
 std::vector<maps::StoredEdge> store_edges(const std::vector<PoseGraphEdge>& edges);

@@ -55,6 +55,7 @@ class MotionLinks {
   void cut();
 
   const std::vector<MotionLink>& links() const { return links_; }
+  std::vector<MotionLink>& links() { return links_; }
 
  private:
   struct Mark {

@@ -49,6 +49,7 @@ class MotionModel {
   void mark_keyframe(int keyframe, double time_s);
   void cut_link() { links_.cut(); }
   const std::vector<MotionLink>& links() const { return links_.links(); }
+  std::vector<MotionLink>& links() { return links_.links(); }
 
  private:
   Se3 predict_free(double time_s) const;

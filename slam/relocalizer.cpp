@@ -37,12 +37,18 @@ bool may_show(const PoseRegion& region, const Se3& keyframe) {
 void Relocalizer::add(const LandmarkMap& map, int keyframe) {
   const Keyframe& k = map.keyframe(keyframe);
   std::vector<Descriptor> descriptors;
+  std::vector<int> landmarks;
   for (std::size_t i = 0; i < k.features.size(); ++i) {
     if (k.landmark_of[i] < 0) continue;
     descriptors.push_back(k.features.descriptor(i));
-    landmark_of_.push_back(k.landmark_of[i]);
+    landmarks.push_back(k.landmark_of[i]);
   }
-  index_.add(keyframe, descriptors);
+  const std::vector<int> numbers = index_.add(keyframe, descriptors);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto number = static_cast<std::size_t>(numbers[i]);
+    if (landmark_of_.size() <= number) landmark_of_.resize(number + 1, -1);
+    landmark_of_[number] = landmarks[i];
+  }
 }
 
 std::vector<bool> Relocalizer::repeated_landmarks(const LandmarkMap& map) const {

@@ -26,6 +26,8 @@ class Relocalizer {
  public:
   /// Adds a keyframe's descriptors (those with landmarks) to the index.
   void add(const LandmarkMap& map, int keyframe);
+  /// A keyframe that was culled is not proposed any more.
+  void remove(int keyframe) { index_.remove(keyframe); }
 
   /// Landmarks that look like another one somewhere else in the map: bricks, tiles, the same print
   /// in two rooms. They fit a pose, but say nothing about which place this is. By landmark id.
@@ -48,7 +50,7 @@ class Relocalizer {
                    const PlaceMatchConfig& config) const;
 
   AppearanceIndex index_;
-  std::vector<int> landmark_of_;  ///< per descriptor in the index
+  std::vector<int> landmark_of_;  ///< per number of a descriptor in the index
 };
 
 }  // namespace rovigo::slam

@@ -7,6 +7,7 @@
 #include "slam/back_end.h"
 #include "slam/camera_frame.h"
 #include "slam/features.h"
+#include "slam/keyframe_culling.h"
 #include "slam/keyframe_maker.h"
 #include "slam/keyframe_uncertainty.h"
 #include "slam/landmark_map.h"
@@ -59,6 +60,7 @@ struct Slam::Impl {
   void remember_tracked(const TrackResult& result);
   void insert_keyframe(const CameraFrame& frame, FeatureSet features, const TrackResult& result,
                        const Se3& pose);
+  void cull_keyframes();
   std::vector<MotionLink> links() const;
   void remember_pose(double time_s, const Se3& pose, bool is_camera_frame);
   PoseEstimate report(double time_s, const Se3& pose);
@@ -198,9 +200,23 @@ void Slam::Impl::insert_keyframe(const CameraFrame& frame, FeatureSet features,
 
   const MotionPrediction now = motion.predict(frame.time_s);
   const auto moved = back_end.add_newest(links(), {now.sigma_position_m, now.sigma_heading_rad});
-  if (!moved) return;
-  motion.shift(*moved);
-  uncertainty.see(map.keyframe(id));
+  if (moved) {
+    motion.shift(*moved);
+    uncertainty.see(map.keyframe(id));
+  }
+  map.forget_unmatched(id);
+  cull_keyframes();
+}
+
+/// What others show as well goes, so that the map grows with the space seen and not with the time
+/// spent in it.
+void Slam::Impl::cull_keyframes() {
+  while (const auto culling = dispensable_keyframe(map)) {
+    back_end.cull(*culling);
+    rehang_links(map, *culling, motion.links());
+    rehang_links(map, *culling, wall_ties.links());
+    map.cull_keyframe(culling->keyframe, culling->host);
+  }
 }
 
 /// Everything that ties keyframes but corners: wheels with gyro, and walls.
@@ -249,21 +265,22 @@ std::optional<PoseEstimate> Slam::process(const mrpt::obs::CObservation& observa
 
 maps::SavedMap Slam::finish() {
   Impl& s = *impl_;
+  s.back_end.forget_places();
   s.back_end.adjust_everything(s.links());
   maps::SavedMap out;
   out.metadata.software_version = ROVIGO_VERSION;
   out.metadata.camera = s.rig.camera;
   out.metadata.base_from_camera = to_mrpt(s.base_from_camera);
-  out.keyframes = store_keyframes(s.map);
   out.edges = store_edges(s.back_end.edges());
   out.trajectory = s.history.poses(s.map);
   out.grid = s.surroundings.render(s.map);
+  out.keyframes = hand_over_keyframes(s.map);
   return out;
 }
 
 SlamSummary Slam::summary() const {
   SlamSummary out = impl_->counters;
-  out.keyframes = static_cast<int>(impl_->map.keyframes().size());
+  out.keyframes = impl_->map.living_keyframes();
   out.loop_closures = impl_->back_end.loop_closures();
   return out;
 }

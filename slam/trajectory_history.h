@@ -1,6 +1,8 @@
 #pragma once
 // Every pose of a run, held relative to a keyframe so that it follows what the back end decides.
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "maps/map_file.h"
@@ -22,12 +24,18 @@ class TrajectoryHistory {
   std::vector<maps::StoredPose> poses(const LandmarkMap& map) const;
 
  private:
+  /// Fifty a second for hours: single precision, microns at a keyframe's distance, halves them.
   struct Entry {
     double time_s = 0.0;
-    int keyframe = -1;
-    Se3 keyframe_from_base;
+    std::int32_t keyframe = -1;
     bool is_camera_frame = true;
+    std::array<float, 3> translation{};
+    std::array<float, 4> rotation_xyzw{0, 0, 0, 1};
+
+    Se3 keyframe_from_base() const;
+    void set(const Se3& keyframe_from_base);
   };
+  static Se3 pose_of(const Entry& entry, const LandmarkMap& map);
   std::vector<Entry> entries_;
 };
 

@@ -9,9 +9,9 @@ namespace rovigo::slam {
 namespace {
 
 constexpr int kMinWallPoints = 30;
-constexpr double kMinWallShare = 0.7;  // of the points that must lie on the walls
-constexpr double kWallStep = 1.0;      // a step beyond this is no correction
-constexpr int kWallKeyframes = 5;      // whose walls are looked at together
+constexpr double kMinWallShare = 0.7;      // of the points that must lie on the walls
+constexpr double kWallStep = 1.0;          // a step beyond this is no correction
+constexpr std::size_t kWallKeyframes = 5;  // whose walls are looked at together
 
 /// How far a match leads away from the prior, in units of 5 cm and 30 mrad.
 double step_of(const WallMatch& match, const TPose2D& prior) {
@@ -42,9 +42,11 @@ MotionLink link_of(const WallMatch& match, const TPose2D& from) {
 }
 
 /// The keyframe at hand and those before it that may show the same walls.
-std::vector<int> last_keyframes(int anchor) {
+std::vector<int> last_keyframes(const LandmarkMap& map, int anchor) {
   std::vector<int> out;
-  for (int k = anchor; k >= 0 && k > anchor - kWallKeyframes; --k) out.push_back(k);
+  for (int k = anchor; k >= 0 && out.size() < kWallKeyframes; --k) {
+    if (!map.keyframe(k).culled()) out.push_back(k);
+  }
   return out;
 }
 
@@ -64,7 +66,7 @@ std::optional<PlanarInformation> WallTies::look(const CameraFrame& frame, const 
   if (frame.depth.empty()) return std::nullopt;
   scan_ = wall_scan(frame, map.camera(), map.base_from_camera(), config_);
   const TPose2D prior = to_planar(pose);
-  const WallMatch match = match_walls(placed_walls(map, last_keyframes(anchor)), scan_, prior,
+  const WallMatch match = match_walls(placed_walls(map, last_keyframes(map, anchor)), scan_, prior,
                                       motion.dead_reckoning().pose_covariance());
   if (!is_plausible(match, prior)) return std::nullopt;
   return match.look;
@@ -77,7 +79,7 @@ WallScan WallTies::scan(const CameraFrame& frame, const LandmarkMap& map) const 
 void WallTies::tie(const LandmarkMap& map, int keyframe, int anchor, const MotionModel& motion) {
   const Keyframe& now = map.keyframe(keyframe);
   const TPose2D prior = to_planar(now.map_from_base);
-  for (const int k : last_keyframes(anchor)) {
+  for (const int k : last_keyframes(map, anchor)) {
     const WallMatch match = match_walls(placed_walls(map, {k}), now.walls, prior,
                                         motion.dead_reckoning().pose_covariance());
     if (!is_plausible(match, prior)) continue;

@@ -34,6 +34,7 @@ class WallTies {
   void tie(const LandmarkMap& map, int keyframe, int anchor, const MotionModel& motion);
 
   const std::vector<MotionLink>& links() const { return links_; }
+  std::vector<MotionLink>& links() { return links_; }
 
  private:
   SlamConfig config_;

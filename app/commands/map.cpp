@@ -4,6 +4,7 @@
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <ctime>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -43,7 +44,11 @@ constexpr int kTrimEvery = 500;
 struct Reading {
   std::vector<double> frame_times_s;
   std::vector<std::string> warnings;  ///< of the reader, already shown
-  double cpu_ms_per_frame = 0.0;
+  double cpu_s = 0.0;                 ///< reading and decoding included
+  double cpu_ms_per_frame(double more_s = 0.0) const {
+    return 1e3 * (cpu_s + more_s) /
+           static_cast<double>(std::max<std::size_t>(1, frame_times_s.size()));
+  }
   double duration_s() const {
     return frame_times_s.empty() ? 0.0 : frame_times_s.back() - frame_times_s.front();
   }
@@ -63,9 +68,7 @@ Reading read_all(slam::RecordingReader& reader, const std::string& label, const 
     if (++taken % kTrimEvery == 0) malloc_trim(0);
     progress.update(reader.progress());
   }
-  const double cpu = cpu_seconds() - cpu_before;
-  const auto frames = reading.frame_times_s.size();
-  if (frames > 0) reading.cpu_ms_per_frame = 1e3 * cpu / static_cast<double>(frames);
+  reading.cpu_s = cpu_seconds() - cpu_before;
   reading.warnings = reader.warnings();
   for (const std::string& warning : reading.warnings) console.warn(warning);
   return reading;
@@ -125,7 +128,10 @@ int run_map(const MapOptions& options) {
     throw maps::InputError(options.recording.string() +
                            ": holds no RGB-D frame; a map needs at least one (see `rovigo info`)");
   }
+  malloc_trim(0);
+  const double cpu_before = cpu_seconds();
   maps::SavedMap map = slam.finish();
+  const double cpu_ms_per_frame = reading.cpu_ms_per_frame(cpu_seconds() - cpu_before);
   map.metadata.software_version = ROVIGO_VERSION;
   map.metadata.recording = reader->info().name;
   map.metadata.simulation = reader->info().simulation;
@@ -154,7 +160,7 @@ int run_map(const MapOptions& options) {
                   {"keyframes", summary.keyframes},
                   {"skipped_frames", reader->skipped()},
                   {"warnings", reading.warnings},
-                  {"cpu_ms_per_frame", reading.cpu_ms_per_frame},
+                  {"cpu_ms_per_frame", cpu_ms_per_frame},
                   {"peak_rss_mb", peak_rss_mb()}},
                  message,
                  {{"frames", std::to_string(summary.camera_frames) + " in " +
@@ -166,7 +172,7 @@ int run_map(const MapOptions& options) {
                   {"grid", std::to_string(map.grid.geometry.width) + " x " +
                                std::to_string(map.grid.geometry.height) + " cells of " +
                                with_unit(map.grid.geometry.resolution_m, 2, "m")},
-                  {"effort", with_unit(reading.cpu_ms_per_frame, 1, "ms CPU per frame") + ", " +
+                  {"effort", with_unit(cpu_ms_per_frame, 1, "ms CPU per frame") + ", " +
                                  with_unit(peak_rss_mb(), 0, "MB")}});
   return ok ? kDone : kDidNotSucceed;
 }
@@ -217,7 +223,7 @@ int run_localize(const LocalizeOptions& options) {
       {"tracked_fraction", tracked},
       {"health", {{"state", to_string(last.health)}, {"confidence", last.confidence}}},
       {"warnings", reading.warnings},
-      {"cpu_ms_per_frame", reading.cpu_ms_per_frame},
+      {"cpu_ms_per_frame", reading.cpu_ms_per_frame()},
       {"peak_rss_mb", peak_rss_mb()}};
   if (first_fix_s) object["first_fix_s"] = *first_fix_s;
   console.result(object, message,

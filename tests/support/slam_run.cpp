@@ -64,7 +64,8 @@ SlamRun run_slam(const std::filesystem::path& recording) {
     run.frame_times_s.push_back(mrpt::Clock::toDouble(observation->timestamp));
     const int frames = static_cast<int>(run.frame_times_s.size());
     if (frames % kSampleEvery == 0) {
-      run.samples.push_back({frames, resident_mb(), cpu_seconds() - cpu_before});
+      run.samples.push_back(
+          {frames, resident_mb(), cpu_seconds() - cpu_before, slam.summary().keyframes});
     }
   }
   run.map = slam.finish();

@@ -18,11 +18,12 @@ struct SlamRun {
   double peak_mb = 0.0;           ///< resident, of this process so far
   double first_pose_ms = 0.0;     ///< wall clock, from asking for the first frame to its pose
 
-  /// Resident memory and CPU time spent, now and then.
+  /// Resident memory, CPU time spent and keyframes, now and then.
   struct Sample {
     int frames = 0;
     double resident_mb = 0.0;
     double cpu_s = 0.0;
+    int keyframes = 0;
   };
   std::vector<Sample> samples;
 };

@@ -67,6 +67,24 @@ TEST(AppearanceIndex, FindsTheViewWhoseDescriptorsComeBackNoisy) {
   }
 }
 
+TEST(AppearanceIndex, ARemovedViewIsNotFoundAndItsNumbersServeAgain) {
+  std::mt19937_64 random(8);
+  const auto view = [&] {
+    std::vector<Descriptor> out(50);
+    for (Descriptor& d : out) d = {random(), random(), random(), random()};
+    return out;
+  };
+  const auto first = view(), second = view(), third = view();
+  AppearanceIndex index;
+  const auto numbers = index.add(0, first);
+  index.add(1, second);
+  index.remove(0);
+  EXPECT_TRUE(index.query(first, 5).empty());
+  EXPECT_EQ(index.query(second, 5).front().view, 1);
+  for (const int number : index.add(2, third)) EXPECT_LT(number, 50);
+  EXPECT_EQ(index.query(third, 5).front().view, 2);
+}
+
 TEST(AppearanceIndex, AnEmptyIndexFindsNothing) {
   EXPECT_TRUE(AppearanceIndex().query({Descriptor{}}, 5).empty());
 }
