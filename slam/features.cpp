@@ -197,7 +197,8 @@ double octave_scale(int octave, const FeatureConfig& config) {
 }
 
 FeatureSet extract_features(const CameraFrame& frame, const CameraModel& camera,
-                            const FeatureConfig& config, const DepthConfig& depth) {
+                            const FeatureConfig& config, const DepthConfig& depth,
+                            const RollingShutter& shutter) {
   std::vector<cv::KeyPoint> keypoints = find_keypoints(frame.gray, config);
   const auto orb =
       cv::ORB::create(config.features_per_frame, static_cast<float>(config.pyramid_scale),
@@ -215,7 +216,7 @@ FeatureSet extract_features(const CameraFrame& frame, const CameraModel& camera,
     const double shift = 0.5 * (octave_scale(k.octave, config) - 1.0);
     const Eigen::Vector2d raw(k.pt.x + shift, k.pt.y + shift);
     Feature f;
-    f.pixel = camera.undistort(raw).cast<float>();
+    f.pixel = at_middle_row(camera.undistort(raw), raw.y(), camera, shutter).cast<float>();
     f.angle_rad = static_cast<float>(k.angle * CV_PI / 180.0);
     f.depth_m = static_cast<float>(frame.depth_at(raw, depth));
     f.octave = static_cast<std::uint8_t>(k.octave);

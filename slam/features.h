@@ -8,6 +8,7 @@
 #include "slam/camera_frame.h"
 #include "slam/camera_model.h"
 #include "slam/descriptor.h"
+#include "slam/rolling_shutter.h"
 #include "slam/slam_config.h"
 
 namespace rovigo::slam {
@@ -48,7 +49,9 @@ class FeatureSet {
 double octave_scale(int octave, const FeatureConfig& config);
 
 /// Finds corners on every level of the image pyramid and keeps the best of each part of the image.
+/// Their pixels are those of an image taken all at once.
 FeatureSet extract_features(const CameraFrame& frame, const CameraModel& camera,
-                            const FeatureConfig& config, const DepthConfig& depth);
+                            const FeatureConfig& config, const DepthConfig& depth,
+                            const RollingShutter& shutter = {});
 
 }  // namespace rovigo::slam

@@ -127,12 +127,12 @@ MotionPrediction MotionModel::predict(double time_s) {
     out.prior.information = planar_prior_information(out.covariance, pose.phi, tracking_);
     out.sigma_position_m = std::sqrt(std::max(0.0, out.covariance(0, 0) + out.covariance(1, 1)));
     out.sigma_heading_rad = std::sqrt(std::max(0.0, out.covariance(2, 2)));
-    out.turn_rate_rad_s = std::abs(planar_filter_.twist().omega);
+    out.turn_rate_rad_s.z() = planar_filter_.twist().omega;
     return out;
   }
   const double dt = std::max(0.0, time_s - time_s_);
   out.prior.map_from_base = predict_free(time_s);
-  out.turn_rate_rad_s = twist_.tail<3>().norm();
+  out.turn_rate_rad_s = twist_.tail<3>();
   out.sigma_position_m = tracking_.free_motion_sigma_m + 0.5 * unseen_s_;
   out.sigma_heading_rad =
       has_gyro_ ? 0.02 + 0.05 * (dt + unseen_s_) : 0.02 + 0.5 * dt + 1.0 * unseen_s_;

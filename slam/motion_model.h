@@ -16,7 +16,8 @@ struct MotionPrediction {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, yaw), map frame
   double sigma_position_m = 0.0;                         ///< of both axes together
   double sigma_heading_rad = 0.0;
-  double turn_rate_rad_s = 0.0;  ///< turning smears and shears images
+  /// In base_link; turning smears and shears images.
+  Eigen::Vector3d turn_rate_rad_s = Eigen::Vector3d::Zero();
 };
 
 class MotionModel {

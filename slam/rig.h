@@ -12,6 +12,7 @@ struct Rig {
   mrpt::img::TCamera camera;  ///< colour camera; depth is registered to it
   mrpt::poses::CPose3D base_from_camera;
   bool has_extrinsics = false;  ///< false: the camera is the body, the first view is taken as level
+  double rolling_shutter_s = 0.0;  ///< from an image's first row to its last; 0: not known
   bool has_wheels = false;
   bool has_imu = false;
 };

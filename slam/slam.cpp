@@ -53,6 +53,7 @@ struct Slam::Impl {
   void begin(double time_s);
   void dead_reckon(double time_s);
   PoseEstimate on_frame(const mrpt::obs::CObservation3DRangeScan& scan);
+  RollingShutter shutter(double time_s);
   TrackResult track(double time_s, const FeatureSet& features);
   Se3 believe(const CameraFrame& frame, const TrackResult& result);
   Se3 follow_walls(const CameraFrame& frame, const Se3& pose);
@@ -98,7 +99,8 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
   last_frame_s = frame.time_s;
   FeatureSet features;
   if (!frame.gray.empty()) {
-    features = extract_features(frame, camera, config.features, config.depth);
+    features =
+        extract_features(frame, camera, config.features, config.depth, shutter(frame.time_s));
   }
 
   const TrackResult result = track(frame.time_s, features);
@@ -119,6 +121,13 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
   const bool starts_map = first && !map.keyframes().empty();
   counters.tracked_frames += starts_map || (tracked && health.state() == TrackingState::kTracking);
   return report(frame.time_s, pose);
+}
+
+/// The recording knows its camera best; the setting speaks for cameras it does not know.
+RollingShutter Slam::Impl::shutter(double time_s) {
+  const double known_s = rig.rolling_shutter_s;
+  return {known_s > 0.0 ? known_s : config.tracking.rolling_shutter_s,
+          base_from_camera.rotation.transpose() * motion.predict(time_s).turn_rate_rad_s};
 }
 
 /// The frame against the landmarks around the prediction; against the whole map where that fails.

@@ -109,6 +109,12 @@ void TrackingConfig::describe(maps::SettingsVisitor& v) {
           .min = 0.0,
           .max = 0.1},
          smear_s);
+  v.real({.name = "rolling_shutter_s",
+          .help = "Time an image takes from its first row to its last, where the recording does "
+                  "not tell; 0: all rows at once.",
+          .min = 0.0,
+          .max = 0.1},
+         rolling_shutter_s);
   v.real({.name = "free_motion_sigma_m",
           .help = "How far a hand-held camera departs from constant velocity in one frame.",
           .min = 1e-4,

@@ -42,6 +42,7 @@ struct TrackingConfig {
   int max_descriptor_distance = 64;     ///< of 256 bits
   double pixel_sigma = 0.8;             ///< of a keypoint on the finest pyramid level
   double smear_s = 0.003;               ///< exposure and rolling shutter: turning blurs and shears
+  double rolling_shutter_s = 0.0;       ///< first row to last, where the recording does not tell
   double free_motion_sigma_m = 0.002;   ///< a hand-held camera's departure from constant velocity
   double plane_height_sigma_m = 0.006;  ///< a rover stays on the floor
   double plane_tilt_sigma_rad = 0.006;

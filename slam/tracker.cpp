@@ -117,7 +117,7 @@ TrackResult track_frame(const LandmarkMap& map, const std::vector<int>& local_la
   const TrackingConfig& config = map.config().tracking;
   TrackResult result;
   Se3 pose = prediction.prior.map_from_base;
-  const double smear_px = config.smear_s * prediction.turn_rate_rad_s * map.camera().fx();
+  const double smear_px = config.smear_s * prediction.turn_rate_rad_s.norm() * map.camera().fx();
   // Wide nets only when the narrow one comes up empty: wide nets catch wrong fish.
   const auto coarse = [&](double radius_px) {
     const auto visible = visible_landmarks(map, local_landmarks, pose);

@@ -227,4 +227,13 @@ std::optional<mrpt::img::TCamera> tum_camera_by_name(const std::string& folder) 
   return std::nullopt;
 }
 
+double tum_rolling_shutter_by_name(const std::string& folder) {
+  // Measured on the Kinect's colour camera by Ringaby & Forssen (2011, "Scan rectification for
+  // structured light range sensors with rolling shutters"). freiburg3 used another camera.
+  constexpr double kKinectReadoutS = 0.026;
+  const bool kinect = folder.find("freiburg1") != std::string::npos ||
+                      folder.find("freiburg2") != std::string::npos;
+  return kinect ? kKinectReadoutS : 0.0;
+}
+
 }  // namespace rovigo::slam

@@ -30,5 +30,7 @@ std::string simulation_text(const maps::SimulationOrigin& simulation);
 
 /// The calibration TUM publishes for its folders: freiburg1, 2 or 3 in the name; else nothing.
 std::optional<mrpt::img::TCamera> tum_camera_by_name(const std::string& folder);
+/// How long their cameras take from an image's first row to its last, s; 0: not known.
+double tum_rolling_shutter_by_name(const std::string& folder);
 
 }  // namespace rovigo::slam

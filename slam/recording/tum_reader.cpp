@@ -120,6 +120,7 @@ void TumReader::read_rig(const OpenOptions& options) {
     rig.camera = read_camera_info(camera_info);
   } else if (const auto camera = tum_camera_by_name(info_.name)) {
     rig.camera = *camera;
+    rig.rolling_shutter_s = tum_rolling_shutter_by_name(info_.name);
   } else {
     throw maps::InputError(directory_.string() +
                            ": the camera's calibration is unknown: there is no camera_info.yaml "

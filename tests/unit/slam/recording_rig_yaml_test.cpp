@@ -133,6 +133,8 @@ TEST(TumCameraByName, KnowsTheThreeFoldersAndNoOther) {
   EXPECT_NEAR(tum_camera_by_name("rgbd_dataset_freiburg3_office")->fy(), 539.2, 0.1);
   EXPECT_FALSE(tum_camera_by_name("rgbd_dataset_freiburg4"));
   EXPECT_FALSE(tum_camera_by_name("my_lab"));
+  EXPECT_EQ(tum_rolling_shutter_by_name("rgbd_dataset_freiburg1_rpy"), 0.026);
+  EXPECT_EQ(tum_rolling_shutter_by_name("my_lab"), 0.0);
 }
 
 }  // namespace
