@@ -88,6 +88,8 @@ void add_recording_commands(CLI::App& app, Action& chosen, bool& json) {
   localize->add_option("map", l->map, "The map file")->required();
   localize->add_option("recording", l->recording, "A .rawlog or a TUM directory")->required();
   localize->add_option("--trajectory", l->trajectory, "Also write the trajectory, TUM format");
+  localize->add_option("--health", l->health,
+                       "Also write health, confidence and pose of every frame, CSV");
   localize->add_option("--frame", l->frame, "Frame of the trajectory")
       ->check(CLI::IsMember({"base_link", "camera"}));
   localize->add_option("--camera-info", l->camera_info, "ROS camera_info YAML");

@@ -39,6 +39,7 @@ struct LocalizeOptions : CommonOptions {
   std::filesystem::path map;
   std::filesystem::path recording;
   std::optional<std::filesystem::path> trajectory;
+  std::optional<std::filesystem::path> health;  ///< CSV, a line a camera frame
   std::string frame = "base_link";
   std::optional<std::filesystem::path> camera_info;
 };
