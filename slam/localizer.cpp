@@ -43,7 +43,8 @@ constexpr double kWorseThanRival = -0.05;
 constexpr double kMostRival = 0.2,
                  kMostRivalTracking = 0.35;  // share of the votes that another place may have
 constexpr double kStillScanShare = 0.5;
-constexpr double kDoubtfulShare = 0.3;  // of the confidence that is left while a frame contradicts
+// Of the confidence, while a frame does not fit: after a jump of the view, and while it goes on.
+constexpr double kBrokenShare = 0.3, kUnbrokenShare = 0.95;
 constexpr double kSureRecognition = 0.9;  // where views cannot be added up
 constexpr double kFullWeightInliers = 40.0;
 // A view this near a mapped one has to match it; elsewhere the map knows nothing to contradict.
@@ -409,7 +410,7 @@ PoseEstimate Localizer::Impl::estimate(double time_s) {
   evidence.sigma_position_m = now.sigma_position_m;
   evidence.sigma_heading_rad = now.sigma_heading_rad;
   evidence.unseen_s = time_s - last_fix_s;
-  e.confidence = (doubt ? kDoubtfulShare : 1.0) * confidence_of(evidence);
+  e.confidence = (!doubt ? 1.0 : broken ? kBrokenShare : kUnbrokenShare) * confidence_of(evidence);
   const bool fresh =
       !doubt && !camera_is_silent(time_s) && evidence.unseen_s <= config.localizer.degraded_after_s;
   const bool sure = state == State::kTracking && evidence.rival_share <= kMostRivalTracking &&

@@ -16,8 +16,8 @@ constexpr double kMostRecognitions = 6.0;
 
 // constant, log inliers, matched share, depth share, scan share, log frames, recognitions, rival,
 // shape margin, log scan points, surface share
-constexpr std::array<double, kConfidenceFeatures> kWeights = {-16.0, 0.4,  0.0,  1.0, 4.0, 1.0,
-                                                              1.0,   -5.0, 15.0, 0.5, 8.0};
+constexpr std::array<double, kConfidenceFeatures> kWeights = {-14.9, 0.42,  0.0,   1.05, 4.2, 1.05,
+                                                              1.05,  -5.25, 15.75, 0.53, 8.4};
 
 }  // namespace
 

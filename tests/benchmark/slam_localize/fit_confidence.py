@@ -1,24 +1,32 @@
 #!/usr/bin/env python3
-"""Fits the weights of slam/localizer_evidence.cpp to CSV files that slam_localize --dump wrote.
+"""Calibrates the weights of slam/localizer_evidence.cpp on CSV files that slam_localize --dump wrote.
 
-Logistic regression (Newton) with a small ridge, on frames whose dead reckoning is as
-good as certain; right and wrong frames are taken as they come, so that the result is a chance.
-Usage: fit_confidence.py A.csv [B.csv ...]   (standard library only)
+Platt scaling: the weights' sum is scaled and shifted so that the logistic of it is the frequency
+with which such frames were right. Frames whose dead reckoning is as good as certain are used.
+Prints the new weights, and the curve on the same files; the curve that counts is that of
+slam_localize in other worlds. Usage: fit_confidence.py A.csv [B.csv ...]   (standard library only)
 """
 import math
+import pathlib
+import re
 import sys
 
-NAMES = ["constant", "log inliers", "matched share", "depth share", "scan share", "log frames",
-         "recognitions", "rival", "shape margin", "log scan points", "surface share"]
+SOURCE = pathlib.Path(__file__).resolve().parents[3] / "slam" / "localizer_evidence.cpp"
 
 
-def read(files):
+def present_weights():
+    text = re.search(r"kWeights = \{([^}]*)\}", SOURCE.read_text()).group(1)
+    return [float(v) for v in text.split(",")]
+
+
+def read(files, weights):
+    """(sum of the weighted evidence, right or not) of every frame."""
     rows = []
     for name in files:
         for line in open(name):
-            values = [float(v) for v in line.split(",")]
-            if values[1] > 0.99:
-                rows.append((values[0], values[2:]))
+            right, sure, *x = (float(v) for v in line.split(","))
+            if sure > 0.99:
+                rows.append((sum(a * b for a, b in zip(weights, x)), right))
     return rows
 
 
@@ -26,52 +34,41 @@ def sigmoid(z):
     return 1.0 / (1.0 + math.exp(-max(-40.0, min(40.0, z))))
 
 
-def fit(rows, ridge=1e-3):
-    """Newton's method: eight weights, a few thousand rows."""
-    n = len(rows[0][1])
-    w = [0.0] * n
-    for _ in range(30):
-        gradient = [-ridge * len(rows) * v for v in w]
-        hessian = [[(ridge * len(rows) if i == j else 0.0) for j in range(n)] for i in range(n)]
-        for y, x in rows:
-            p = sigmoid(sum(a * b for a, b in zip(w, x)))
-            for i in range(n):
-                gradient[i] += (y - p) * x[i]
-                for j in range(n):
-                    hessian[i][j] += p * (1 - p) * x[i] * x[j]
-        step = solve(hessian, gradient)
-        w = [a + b for a, b in zip(w, step)]
-        if max(abs(s) for s in step) < 1e-6:
-            break
-    return w
-
-
-def solve(a, b):
-    n = len(b)
-    m = [row[:] + [v] for row, v in zip(a, b)]
-    for i in range(n):
-        k = max(range(i, n), key=lambda r: abs(m[r][i]))
-        m[i], m[k] = m[k], m[i]
-        for r in range(i + 1, n):
-            f = m[r][i] / m[i][i]
-            for c in range(i, n + 1):
-                m[r][c] -= f * m[i][c]
-    x = [0.0] * n
-    for i in reversed(range(n)):
-        x[i] = (m[i][n] - sum(m[i][j] * x[j] for j in range(i + 1, n))) / m[i][i]
-    return x
+def platt(rows):
+    """Newton's method for the two unknowns."""
+    scale, shift = 1.0, 0.0
+    for _ in range(50):
+        g0 = g1 = h01 = 0.0
+        h00 = h11 = 1e-3
+        for z, right in rows:
+            p = sigmoid(scale * z + shift)
+            g0 += (right - p) * z
+            g1 += right - p
+            h00 += p * (1 - p) * z * z
+            h01 += p * (1 - p) * z
+            h11 += p * (1 - p)
+        d = h00 * h11 - h01 * h01
+        scale += (g0 * h11 - g1 * h01) / d
+        shift += (g1 * h00 - g0 * h01) / d
+    return scale, shift
 
 
 def main():
-    rows = read(sys.argv[1:])
-    right = sum(y for y, _ in rows)
-    print(f"{len(rows)} frames, {len(rows) - right:.0f} wrong")
-    w = fit(rows)
-    for name, value in zip(NAMES, w):
-        print(f"  {name:14s} {value:8.3f}")
-    loss = -sum(math.log(max(1e-12, p if y else 1 - p)) for y, p in
-                ((y, sigmoid(sum(a * b for a, b in zip(w, x)))) for y, x in rows)) / len(rows)
-    print(f"mean log loss {loss:.4f}")
+    weights = present_weights()
+    rows = read(sys.argv[1:], weights)
+    scale, shift = platt(rows)
+    print(f"{len(rows)} frames, {sum(1 - r for _, r in rows):.0f} wrong; "
+          f"scale {scale:.3f}, shift {shift:.3f}")
+    print("weights:", ", ".join(f"{scale * w + (shift if i == 0 else 0):.2f}"
+                                for i, w in enumerate(weights)))
+    edges = [0.0, 0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 0.99, 0.995, 1.0]
+    for low, high in zip(edges, edges[1:]):
+        said = [(sigmoid(scale * z + shift), r) for z, r in rows]
+        inside = [(p, r) for p, r in said if low <= p < high or p == high == 1.0]
+        if inside:
+            n = len(inside)
+            print(f"  said {sum(p for p, _ in inside) / n:.3f}  right "
+                  f"{sum(r for _, r in inside) / n:.3f}  ({n} frames)")
 
 
 if __name__ == "__main__":

@@ -93,7 +93,7 @@ Run localize(const MappedWorld& world, const app::RovigoConfig& config,
 }
 
 std::vector<CalibrationBin> calibration_curve(const std::vector<Run>& runs) {
-  constexpr double kEdges[] = {0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 0.98, 0.99, 1.0};
+  constexpr double kEdges[] = {0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 1.0};
   std::vector<CalibrationBin> bins;
   for (std::size_t i = 0; i + 1 < std::size(kEdges); ++i) {
     bins.push_back({kEdges[i], kEdges[i + 1], 0, 0.0, 0.0});

@@ -16,6 +16,9 @@ LocalizerEvidence convincing() {
   e.scan_share = 0.97;
   e.agreeing_frames = 15;
   e.recognitions = 3.0;
+  e.scan_points = 200;
+  e.surface_share = 0.97;
+  e.shape_margin = 0.15;
   e.sigma_position_m = 0.01;
   e.sigma_heading_rad = 0.005;
   return e;
@@ -40,6 +43,14 @@ TEST(ConfidenceOf, ALookAlikeWithHalfTheVotesIsNotOk) {
   EXPECT_LT(confidence_of(e), kOkConfidence);
 }
 
+TEST(ConfidenceOf, AnotherPlaceOfTheSameShapeIsNotOk) {
+  LocalizerEvidence e = convincing();
+  e.shape_margin = 0.0;
+  e.recognitions = 1.0;
+  e.inliers = 20;
+  EXPECT_LT(confidence_of(e), kOkConfidence);
+}
+
 TEST(ConfidenceOf, IsAChanceForAnyEvidence) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> u(-1.0, 2.0);
@@ -52,6 +63,9 @@ TEST(ConfidenceOf, IsAChanceForAnyEvidence) {
     e.agreeing_frames = static_cast<int>(100 * u(random));
     e.recognitions = 10 * u(random);
     e.rival_share = u(random);
+    e.surface_share = u(random);
+    e.shape_margin = u(random);
+    e.scan_points = static_cast<int>(500 * u(random));
     e.sigma_position_m = std::abs(u(random));
     e.sigma_heading_rad = std::abs(u(random));
     const double p = confidence_of(e);
