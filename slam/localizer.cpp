@@ -78,6 +78,7 @@ struct Localizer::Impl {
   Impl(const SlamConfig& settings, const Rig& r, const maps::SavedMap& saved,
        const std::optional<PosePrior>& given)
       : config(settings),
+        rig(r),
         map(restore_landmark_map(saved, settings)),
         motion(settings, r),
         odometry(settings, r),
@@ -118,6 +119,7 @@ struct Localizer::Impl {
   PoseEstimate estimate(double time_s);
 
   SlamConfig config;
+  Rig rig;
   LandmarkMap map;
   MotionModel motion;
   MotionModel odometry;  ///< never corrected: ties together what is seen while searching
@@ -368,7 +370,10 @@ void Localizer::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan) {
   view.frame = camera_frame_from(scan, map.camera());
   note_interval(view.frame.time_s);
   if (view.frame.gray.empty()) return;
-  view.features = extract_features(view.frame, map.camera(), config.features, config.depth);
+  view.features = extract_features(
+      view.frame, map.camera(), config.features, config.depth,
+      rolling_shutter_of(rig, config.tracking, motion.predict(view.frame.time_s).turn_rate_rad_s,
+                         map.base_from_camera()));
   if (finder.has_grid() && !view.frame.depth.empty()) {
     view.scan = obstacle_points(view.frame.depth, view.frame.depth_unit_m, map.camera(),
                                 map.base_from_camera(), config);

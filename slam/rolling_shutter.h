@@ -4,6 +4,9 @@
 #include <Eigen/Core>
 
 #include "slam/camera_model.h"
+#include "slam/rig.h"
+#include "slam/se3.h"
+#include "slam/slam_config.h"
 
 namespace rovigo::slam {
 
@@ -11,6 +14,12 @@ struct RollingShutter {
   double readout_s = 0.0;  ///< from the first row to the last; 0: all rows at once
   Eigen::Vector3d turn_rate_rad_s = Eigen::Vector3d::Zero();  ///< of the camera, optical axes
 };
+
+/// The shutter while the rover turns at `turn_rate_rad_s` (base_link). The recording knows its
+/// camera best; the setting speaks for cameras it does not know.
+RollingShutter rolling_shutter_of(const Rig& rig, const TrackingConfig& config,
+                                  const Eigen::Vector3d& turn_rate_rad_s,
+                                  const Se3& base_from_camera);
 
 /// Where a pixel would be had the whole image been taken with its middle row: `ideal` is the pixel
 /// without distortion, `raw_row` the row it was read in. Model: the camera turns evenly; what

@@ -53,7 +53,6 @@ struct Slam::Impl {
   void begin(double time_s);
   void dead_reckon(double time_s);
   PoseEstimate on_frame(const mrpt::obs::CObservation3DRangeScan& scan);
-  RollingShutter shutter(double time_s);
   TrackResult track(double time_s, const FeatureSet& features);
   Se3 believe(const CameraFrame& frame, const TrackResult& result);
   Se3 follow_walls(const CameraFrame& frame, const Se3& pose);
@@ -99,8 +98,10 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
   last_frame_s = frame.time_s;
   FeatureSet features;
   if (!frame.gray.empty()) {
-    features =
-        extract_features(frame, camera, config.features, config.depth, shutter(frame.time_s));
+    features = extract_features(
+        frame, camera, config.features, config.depth,
+        rolling_shutter_of(rig, config.tracking, motion.predict(frame.time_s).turn_rate_rad_s,
+                           base_from_camera));
   }
 
   const TrackResult result = track(frame.time_s, features);
@@ -121,13 +122,6 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
   const bool starts_map = first && !map.keyframes().empty();
   counters.tracked_frames += starts_map || (tracked && health.state() == TrackingState::kTracking);
   return report(frame.time_s, pose);
-}
-
-/// The recording knows its camera best; the setting speaks for cameras it does not know.
-RollingShutter Slam::Impl::shutter(double time_s) {
-  const double known_s = rig.rolling_shutter_s;
-  return {known_s > 0.0 ? known_s : config.tracking.rolling_shutter_s,
-          base_from_camera.rotation.transpose() * motion.predict(time_s).turn_rate_rad_s};
 }
 
 /// The frame against the landmarks around the prediction; against the whole map where that fails.
@@ -291,6 +285,10 @@ SlamSummary Slam::summary() const {
   SlamSummary out = impl_->counters;
   out.keyframes = impl_->map.living_keyframes();
   out.loop_closures = impl_->back_end.loop_closures();
+  const FloorPlane& floor = impl_->surroundings.floor();
+  out.floor_height_m = floor.height_m;
+  out.floor_tilt_rad = std::atan(std::hypot(floor.slope_x, floor.slope_y));
+  out.floor_looks = floor.looks;
   return out;
 }
 

@@ -19,6 +19,10 @@ struct SlamSummary {
   int tracked_frames = 0;  ///< health OK
   int keyframes = 0;
   int loop_closures = 0;
+  /// The floor the camera saw against the mount's word: its height, its tilt, and by how many
+  /// looks.
+  double floor_height_m = 0.0, floor_tilt_rad = 0.0;
+  int floor_looks = 0;
 };
 
 /// Feed it every observation in time order (CObservation3DRangeScan, CObservationIMU,

@@ -217,6 +217,7 @@ void LocalizerConfig::describe(maps::SettingsVisitor& v) {
 void SlamConfig::describe(maps::SettingsVisitor& v) {
   features.describe(v);
   depth.describe(v);
+  depth_filter.describe(v);
   dead_reckoning.describe(v);
   tracking.describe(v);
   loop.describe(v);

@@ -2,6 +2,7 @@
 // Every setting of slam, with its unit; defaults suit the Leo-like rover and a D455-like camera.
 
 #include "maps/settings.h"
+#include "slam/depth_filter_config.h"
 
 namespace rovigo::slam {
 
@@ -83,6 +84,7 @@ struct LocalizerConfig {
 struct SlamConfig {
   FeatureConfig features;
   DepthConfig depth;
+  DepthFilterConfig depth_filter;
   DeadReckoningConfig dead_reckoning;
   TrackingConfig tracking;
   LoopConfig loop;

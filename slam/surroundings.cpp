@@ -13,7 +13,9 @@ namespace rovigo::slam {
 
 namespace {
 
-constexpr double kLookSpacing = 0.15;  // in units of the keyframe spacing
+constexpr double kLookSpacing = 0.15;   // in units of the keyframe spacing
+constexpr double kRestSpacing = 0.005;  // 2 mm or 1 mrad: noise of a pose at rest
+constexpr int kSettledFrames = 10;
 constexpr double kBodyRadiusM = 0.20;  // half the rover's width: where it was is free
 constexpr double kPatchRadiusM = 0.75;
 constexpr int kMinShared = 20;  // landmarks, for keyframes to hang together rigidly
@@ -33,7 +35,7 @@ Surroundings::Surroundings(const SlamConfig& config, const CameraModel& camera,
     : config_(config),
       base_from_camera_(base_from_camera),
       on_floor_(on_floor),
-      filter_(DepthFilterConfig{}),
+      filter_(config.depth_filter),
       scanner_(camera, config.depth),
       voter_(config.grid, config.depth),
       watch_(camera, config.depth) {}
@@ -87,9 +89,16 @@ void Surroundings::look(const CameraFrame& frame, const LandmarkMap& map, int ke
                                 to_planar(pose))),
       floor_.corrected(base_from_camera_)};
   watch_.remember(frame.depth, frame.depth_unit_m, view);
+  const bool at_rest = keyframe_spacing(frame_pose_, pose, config_.tracking) < kRestSpacing;
+  frame_pose_ = pose;
+  rested_frames_ = at_rest ? rested_frames_ + 1 : 0;
+  const cv::Mat depth = filter_.apply(frame.depth, at_rest);
   const bool moved =
       last_keyframe_ < 0 || keyframe_spacing(last_pose_, pose, config_.tracking) >= kLookSpacing;
-  if (moved) {
+  // What is averaged over time is worth one more look, once the average has settled.
+  const bool settled =
+      config_.depth_filter.depth_temporal_filter && rested_frames_ == kSettledFrames;
+  if (moved || settled) {
     const std::size_t patch = patch_of(map, keyframe);
     last_pose_ = pose;
     last_keyframe_ = keyframe;
@@ -97,8 +106,7 @@ void Surroundings::look(const CameraFrame& frame, const LandmarkMap& map, int ke
     const TPose2D map_from_patch =
         maps::compose(to_planar(map.keyframe(p.keyframe).map_from_base), p.keyframe_from_patch);
     const TPose2D patch_from_level = maps::compose(maps::inverse(map_from_patch), to_planar(pose));
-    // Looks are taken on the move, where nothing may be averaged over time.
-    DepthScanner::Samples samples = scanner_.sample(filter_.apply(frame.depth, false));
+    DepthScanner::Samples samples = scanner_.sample(depth);
     follow_floor(samples, frame.depth_unit_m);
     view.level_from_camera = floor_.corrected(base_from_camera_);
     pending_.push_back({view, patch, patch_from_level, std::move(samples), frame.depth_unit_m});

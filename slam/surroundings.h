@@ -76,7 +76,9 @@ class Surroundings {
   std::vector<AnchoredPatch> patches_;
   std::map<int, std::size_t> patch_of_keyframe_;
   int last_keyframe_ = -1;
-  Se3 last_pose_;
+  Se3 last_pose_;   ///< of the last look
+  Se3 frame_pose_;  ///< of the last frame
+  int rested_frames_ = 0;
 };
 
 }  // namespace rovigo::slam
