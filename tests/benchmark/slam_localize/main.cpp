@@ -189,6 +189,7 @@ void Bench::kidnaps(const MappedWorld& world) {
     const auto result = run(world, recording);
     if (!result) continue;
     ++made;
+    const int wrong_poses = result->confidently_wrong_poses_but_until_the_frame_after(kKidnapAtS);
     const auto before = result->first_right_s();
     const auto lost = result->first_s(slam::Health::kLost, kKidnapAtS);
     const auto back = result->first_right_s(resumes_s);
@@ -200,8 +201,8 @@ void Bench::kidnaps(const MappedWorld& world) {
     back_in_time += in_back;
     if (was_found && lost) lost_times.push_back(*lost - resumes_s);
     if (back) back_times.push_back(*back - resumes_s);
-    wrong += result->confidently_wrong_poses();
-    if (in_lost && in_back && result->confidently_wrong_poses() == 0) continue;
+    wrong += wrong_poses;
+    if (in_lost && in_back && wrong_poses == 0) continue;
     char text[300];
     std::snprintf(
         text, sizeof text,
@@ -210,8 +211,7 @@ void Bench::kidnaps(const MappedWorld& world) {
         "--kidnaps 1 --trace",
         world.name.c_str(), i, then.x, then.y, then.phi, resumes_s,
         lost ? number(*lost - resumes_s).c_str() : "-",
-        back ? number(*back - resumes_s).c_str() : "-", result->confidently_wrong_poses(),
-        world.name.c_str(), i);
+        back ? number(*back - resumes_s).c_str() : "-", wrong_poses, world.name.c_str(), i);
     fail(text);
   }
   if (made == 0) return;

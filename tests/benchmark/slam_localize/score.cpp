@@ -62,6 +62,16 @@ int Run::confidently_wrong_poses() const {
                                         [](const Answer& a) { return a.confidently_wrong(); }));
 }
 
+int Run::confidently_wrong_poses_but_until_the_frame_after(double from_s) const {
+  const auto frame = std::find_if(answers.begin(), answers.end(), [&](const Answer& a) {
+    return a.is_frame && a.time_s >= from_s;
+  });
+  const double until_s = frame == answers.end() ? from_s : frame->time_s;
+  return static_cast<int>(std::count_if(answers.begin(), answers.end(), [&](const Answer& a) {
+    return a.confidently_wrong() && (a.time_s < from_s || a.time_s >= until_s);
+  }));
+}
+
 Run localize(const MappedWorld& world, const app::RovigoConfig& config,
              const std::filesystem::path& recording) {
   const auto truth = slam::read_tum_trajectory(truth_of(recording));

@@ -40,6 +40,9 @@ struct Run {
   std::optional<double> first_s(slam::Health health, double from_s) const;
   int confidently_wrong_frames() const;
   int confidently_wrong_poses() const;
+  /// Those before `from_s` and those from the first frame after it on: between the two no sensor of
+  /// a rover that was put down elsewhere at once can tell.
+  int confidently_wrong_poses_but_until_the_frame_after(double from_s) const;
 };
 
 /// Feeds a recording to a fresh localizer that knows nothing of where it starts.
