@@ -152,6 +152,23 @@ TEST(InertialFilter, TurningOnRestingWheelsIsBeingCarried) {
   EXPECT_TRUE(filter.carried());
 }
 
+TEST(InertialFilter, ACarriedRoverNeitherFliesOffNorForgetsItsWheels) {
+  InertialFilter filter = started();
+  SimulatedSensors drive;
+  drive.run(filter, 2.0, 0.3, 0.0);
+  drive.run(filter, 2.0, 0.0, 0.0);
+  drive.slip_left = drive.slip_right = -1.0;
+  drive.run(filter, 3.0, 1.2, 0.7);  // somebody walks off with it
+  drive.run(filter, 2.0, 0.0, 0.0);
+  drive.slip_left = drive.slip_right = 0.0;
+  EXPECT_TRUE(filter.carried());
+  EXPECT_NEAR(filter.twist().vx, 0.0, 0.05);
+  EXPECT_NEAR(filter.state().speed_scale, 0.0, 0.05);
+  filter.place(drive.truth, 0.05, 0.03);
+  drive.run(filter, 5.0, 0.4, 0.0);
+  EXPECT_LT(drive.position_error(filter), 0.1);
+}
+
 TEST(InertialFilter, UncertaintyGrowsWithoutLooksAndShrinksWithThem) {
   InertialFilter filter = started();
   SimulatedSensors drive;
