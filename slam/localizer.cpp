@@ -38,6 +38,7 @@ constexpr double kPlausibleScanShare =
     0.75;                                // to be believed for a moment, with no view recognised
 constexpr double kHeldScanShare = 0.75;  // of one view, to hold a pose by it alone
 constexpr int kSureScanPoints = 60;
+constexpr double kNoShapeMargin = 0.1;
 constexpr double kLeastBelief = 0.5;  // in a place not yet confirmed, to call it more than LOST
 constexpr double kWorseThanRival = -0.05;
 constexpr double kMostRival = 0.2,
@@ -247,7 +248,9 @@ void Localizer::Impl::weigh_support(double time_s) {
   evidence.rival_share = support.rival_recognition_share();
   evidence.scan_share = support.scan_share;
   evidence.surface_share = support.surface_share;
-  evidence.shape_margin = support.shape - support.rival_shape;
+  // Without a floor there is no shape to compare; matches that fix all six degrees of freedom have
+  // to speak for themselves.
+  evidence.shape_margin = finder.has_grid() ? support.shape - support.rival_shape : kNoShapeMargin;
   evidence.scan_points = support.scan_points;
 }
 
