@@ -347,8 +347,9 @@ void Localizer::Impl::miss(const View& view, const std::vector<int>& local_landm
   const bool carried_off = contradicted_since_s && misses >= kLostAfterMisses &&
                            time_s - *contradicted_since_s >= kLostAfterS;
   if (carried_off || motion.carried() ||
-      prediction.sigma_position_m > config.localizer.lost_sigma_m)
+      prediction.sigma_position_m > config.localizer.lost_sigma_m) {
     lose();
+  }
 }
 
 /// Enough frames agree, and the whole map has no better place for what they show.

@@ -90,6 +90,7 @@ void PlaceFinder::propose(const Se3& map_from_odom, const Se3& odom_from_base) {
 void PlaceFinder::search(const Se3& odom_from_base, const std::optional<PoseRegion>& region) {
   if (scan_search_ && points_.size() >= kFewPoints) {
     const auto found = scan_search_->find(some_of(points_), kLeastFit, kBelowBest, kMostPlaces);
+    knows_all_rivals_ = found.complete;
     for (const ScanPlace& place : found.places) {
       const Se3 map_from_base = from_planar(place.map_from_scan);
       if (region && !region->contains(map_from_base)) continue;
@@ -173,7 +174,8 @@ PlaceSupport PlaceFinder::support(const Se3& map_from_base, const Se3& odom_from
     out.surface_share = here.surface_share;
     out.shape = here.shape();
   }
-  if (!by_shape) out.rival_shape = out.shape;  // nothing to tell them apart by
+  // Nothing to tell them apart by, or a place as good may have been left unfound.
+  if (!by_shape || !knows_all_rivals_) out.rival_shape = out.shape;
   for (const PlaceCandidate& c : candidates_) {
     if (is_same(c.map_from_odom * odom_from_base, map_from_base)) {
       out.recognitions += c.recognitions;
@@ -193,6 +195,7 @@ void PlaceFinder::clear() {
   views_.clear();
   points_.clear();
   candidates_.clear();
+  knows_all_rivals_ = true;
 }
 
 }  // namespace rovigo::slam

@@ -20,8 +20,8 @@ struct PlaceCandidate {
   double scan_share = 0.0;    ///< of the local scan, how much fits the grid there
   double surface_share = kUnjudgedShare;  ///< of what keyframes saw there, how much views show
 
-  static constexpr double kUnjudgedShare =
-      0.85;  ///< nobody looked that way: neither for nor against
+  /// Nobody looked that way: neither for nor against.
+  static constexpr double kUnjudgedShare = 0.85;
   double shape() const { return 0.5 * (scan_share + surface_share); }
 };
 
@@ -86,6 +86,7 @@ class PlaceFinder {
   LocalScan local_scan_;
   std::vector<ScanPoint> points_;  ///< of the local scan, in base_link of the newest frame
   std::vector<PlaceCandidate> candidates_;
+  bool knows_all_rivals_ = true;  ///< the last search came to its end
 };
 
 }  // namespace rovigo::slam

@@ -139,6 +139,7 @@ ScanSearchResult ScanSearch::find(const std::vector<TPoint2D>& points, double mi
       for (int x = 0; x < geometry_.width; x += window) consider(search, kLevels - 1, h, x, y);
     }
   }
+  search.nodes = 0;  // the limit is on what has to be opened, whatever the map's size
   // Best first: what comes out as a single cell is better than all that is left.
   while (!search.open.empty() && out.places.size() < most) {
     const Node node = search.open.top();
