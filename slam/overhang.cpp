@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <bitset>
 #include <cmath>
 
@@ -9,11 +10,11 @@ namespace rovigo::slam {
 
 namespace {
 
-constexpr double kReachM = 1.0;  // from an edge: half of the largest table, and something over
-constexpr int kDirections = 32;  // asked around a cell
-constexpr int kWidestGap = 17;   // of them, between neighbouring edges: half of them, and noise
+constexpr double kReachM = 1.0;   // from an edge: half of the largest table, and something over
+constexpr int kDirections = 32;   // asked around a cell
+constexpr int kWidestGap = 17;    // of them, between neighbouring edges: half of them, and noise
+constexpr int kThickestEdge = 3;  // bands
 constexpr std::int8_t kInferred = 80;  // percent
-constexpr int kNone = -1;
 
 int lowest_bit(std::uint16_t bits) {
   int b = 0;
@@ -21,12 +22,13 @@ int lowest_bit(std::uint16_t bits) {
   return b;
 }
 
-/// The band of the underside of what hangs in a cell (occupied, free below); kNone where nothing
-/// does.
-int underside(const CellBands& c) {
-  if (c.occupied == 0) return kNone;
-  const int low = lowest_bit(c.occupied);
-  return (c.free & ((1U << low) - 1U)) != 0U ? low : kNone;
+/// The bands of a top's edge in a cell: few, occupied above a free one (below which a leg may
+/// stand). The front of a cupboard on feet is no such edge.
+std::uint16_t edge_in(const CellBands& c) {
+  if (c.free == 0) return 0;
+  const std::uint16_t up_to_free = (2U << lowest_bit(c.free)) - 1U;
+  const auto edge = static_cast<std::uint16_t>(c.occupied & ~up_to_free);
+  return std::popcount(edge) <= kThickestEdge ? edge : 0;
 }
 
 /// Crossed by rays below a height that hides: nothing occupied, not all of the upper half free, and
@@ -37,19 +39,19 @@ bool is_under_something(const CellBands& c) {
   return (c.free & ((1U << lowest_bit(gaps)) - 1U)) != 0U;
 }
 
-/// The underside of the edge that a walk under cover ends at; kNone where it ends at none.
-int edge_ahead(const std::vector<CellBands>& bands, const maps::GridGeometry& g, maps::Cell from,
-               const TPoint2D& direction) {
+/// The bands of the edge that a walk under cover ends at; none where it ends at no edge.
+std::uint16_t edge_ahead(const std::vector<CellBands>& bands, const maps::GridGeometry& g,
+                         maps::Cell from, const TPoint2D& direction) {
   const int farthest = static_cast<int>(kReachM / g.resolution_m);
   for (int i = 1; i <= farthest; ++i) {
     const maps::Cell c{from.x + static_cast<int>(std::lround(i * direction.x)),
                        from.y + static_cast<int>(std::lround(i * direction.y))};
-    if (!g.contains(c)) return kNone;
+    if (!g.contains(c)) return 0;
     const CellBands& at = bands[g.index_of(c)];
-    if (at.occupied != 0) return underside(at);
-    if (!is_under_something(at)) return kNone;
+    if (at.occupied != 0) return edge_in(at);
+    if (!is_under_something(at)) return 0;
   }
-  return kNone;
+  return 0;
 }
 
 using Directions = std::bitset<kDirections>;
@@ -67,11 +69,11 @@ int widest_gap(const Directions& edges) {
 /// Edges of one level stand all around the cell, as far as it is hidden at their height.
 bool is_amid_edges(const std::vector<CellBands>& bands, const maps::GridGeometry& g,
                    std::size_t cell, const std::array<TPoint2D, kDirections>& directions) {
-  std::array<Directions, kHeightBands + 1> edges;  // by the band of their underside
+  std::array<Directions, kHeightBands + 1> edges;  // by their lowest band
   for (std::size_t i = 0; i < directions.size(); ++i) {
-    const int band = edge_ahead(bands, g, g.cell_of(cell), directions[i]);
-    if (band == kNone || ((bands[cell].free >> band) & 1U) != 0U) continue;
-    edges[static_cast<std::size_t>(band)].set(i);
+    const auto edge = static_cast<std::uint16_t>(
+        edge_ahead(bands, g, g.cell_of(cell), directions[i]) & ~bands[cell].free);
+    if (edge != 0) edges[static_cast<std::size_t>(lowest_bit(edge))].set(i);
   }
   for (std::size_t band = 0; band < kHeightBands; ++band) {
     // One top's edges may fall on two neighbouring bands.
