@@ -7,7 +7,11 @@
 #include <optional>
 
 #include "maps/map_file.h"
+#include "slam/camera_frame.h"
+#include "slam/features.h"
+#include "slam/landmark_map.h"
 #include "slam/localizer_evidence.h"
+#include "slam/motion_model.h"
 #include "slam/pose_estimate.h"
 #include "slam/rig.h"
 #include "slam/slam_config.h"
@@ -29,16 +33,23 @@ class Localizer {
  public:
   Localizer(const SlamConfig& config, const Rig& rig, const maps::SavedMap& map,
             const std::optional<PosePrior>& prior);
+  /// In a map that is being made: it must outlive this, and stay as it is meanwhile.
+  /// `motion` knows how wheels and gyro are calibrated.
+  Localizer(const SlamConfig& config, const Rig& rig, const LandmarkMap& map,
+            const maps::OccupancyGrid& grid, const MotionModel& motion);
   ~Localizer();
 
   /// The pose after this observation: corrected by a camera frame, carried on by wheels and gyro.
   PoseEstimate process(const mrpt::obs::CObservation& observation);
+  /// The same for a camera frame whose features are known already.
+  PoseEstimate process(const CameraFrame& frame, FeatureSet features);
 
   /// What the last estimate's confidence was computed from; nothing while no place is believed.
   std::optional<LocalizerEvidence> evidence() const;
 
  private:
   struct Impl;
+  std::unique_ptr<LandmarkMap> restored_;  ///< of a saved map
   std::unique_ptr<Impl> impl_;
 };
 

@@ -35,6 +35,8 @@ class TrackingHealth {
   void update(const FrameEvidence& frame);
   /// The place was recognised far from the believed pose.
   void found_elsewhere();
+  /// Dead reckoning has become worthless.
+  void give_up() { state_ = TrackingState::kLost; }
 
   /// Dead reckoning may be built upon: nothing speaks against it.
   bool is_trusted() const {
