@@ -15,7 +15,7 @@ constexpr double kWorthlessSigmaM = 0.5;  // dead reckoning beyond it is no bett
 }  // namespace
 
 void Recovery::add(const mrpt::obs::CObservation& reading) {
-  if (search_) search_->process(reading);
+  if (search_) guess_ = search_->process(reading);
 }
 
 void Recovery::recover(const CameraFrame& frame, const FeatureSet& features, std::uint64_t seed,
@@ -32,11 +32,13 @@ void Recovery::search(const CameraFrame& frame, const FeatureSet& features, Loca
                       TrackResult& result) {
   if (!search_) search_.emplace(config_, rig_, map_, surroundings_.grid_so_far(map_), motion_);
   const PoseEstimate found = search_->process(frame, features);
+  guess_ = found;
   if (found.health != Health::kOk) return;
   const Se3 believed = motion_.predict(frame.time_s).prior.map_from_base;
   const Se3 seen = from_mrpt(found.map_from_base);
   local = select_local_map(map_, {}, seen);
   move_to(frame.time_s, seen, believed, local.reference_keyframe);
+  health_.found_for_sure();
   result = track_frame(map_, local.landmarks, features, motion_.predict(frame.time_s));
   misses_ = 0;
 }
@@ -55,6 +57,7 @@ void Recovery::recognise(double time_s, const FeatureSet& features, std::uint64_
       return;
     }
     move_to(time_s, seen, believed.prior.map_from_base, found.keyframe);
+    health_.found_elsewhere();
   }
   result.status = TrackStatus::kTracked;
   result.solution = found.match.solution;
@@ -83,7 +86,6 @@ void Recovery::move_to(double time_s, const Se3& seen, const Se3& believed, int 
   jump_ = Jump{since_s, time_s, keyframe, seen * believed.inverse()};
   motion_.place(time_s, seen, kFoundSigmaM, kFoundSigmaRad);
   motion_.cut_link();
-  health_.found_elsewhere();
 }
 
 void Recovery::sharpen(const Se3& seen_from_predicted) {
@@ -93,6 +95,7 @@ void Recovery::sharpen(const Se3& seen_from_predicted) {
 void Recovery::mend(TrajectoryHistory& history) {
   if (health_.state() != TrackingState::kTracking) return;
   search_.reset();  // the map is about to change
+  guess_.reset();
   if (!jump_) return;
   history.reanchor(jump_->since_s, jump_->until_s, map_, jump_->keyframe,
                    jump_->new_map_from_old_map);

@@ -38,6 +38,9 @@ class Recovery {
   /// wrong, however well a look-alike there may fit.
   bool must_search() const { return motion_.planar() && health_.state() == TrackingState::kLost; }
 
+  /// What a search under way believes; nothing unless `must_search()`.
+  std::optional<PoseEstimate> guess() const { return must_search() ? guess_ : std::nullopt; }
+
   /// Without a usable prediction. A rover on its floor that is LOST finds itself in the map so far
   /// as in a saved one, with all the care that takes. Otherwise the last known surroundings are
   /// asked by appearance, then the whole map. A place far from the pose believed moves the rover
@@ -74,7 +77,8 @@ class Recovery {
   const Relocalizer& relocalizer_;
   MotionModel& motion_;
   TrackingHealth& health_;
-  int misses_ = 0;                   ///< frames in a row that matched nothing
+  int misses_ = 0;  ///< frames in a row that matched nothing
+  std::optional<PoseEstimate> guess_;
   std::optional<Localizer> search_;  ///< in the map as it was when the rover was lost
   std::optional<Jump> jump_;
 };

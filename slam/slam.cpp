@@ -243,6 +243,7 @@ void Slam::Impl::remember_pose(double time_s, const Se3& pose, bool is_camera_fr
 }
 
 PoseEstimate Slam::Impl::report(double time_s, const Se3& pose) {
+  if (const auto guess = recovery.guess(); guess && guess->time_s >= time_s) return *guess;
   return report_pose(pose, time_s, motion.predict(time_s), uncertainty.at(pose), health.state(),
                      time_s - last_frame_s, config.localizer);
 }
