@@ -7,16 +7,17 @@
 #include <optional>
 
 #include "maps/map_file.h"
-#include "slam/camera_frame.h"
-#include "slam/features.h"
-#include "slam/landmark_map.h"
 #include "slam/localizer_evidence.h"
-#include "slam/motion_model.h"
 #include "slam/pose_estimate.h"
 #include "slam/rig.h"
 #include "slam/slam_config.h"
 
 namespace rovigo::slam {
+
+struct CameraFrame;
+class FeatureSet;
+class LandmarkMap;
+class MotionModel;
 
 /// Where somebody says the rover is (RViz's pose estimate); wide enough to be true.
 struct PosePrior {
