@@ -66,17 +66,19 @@ int widest_gap(const Directions& edges) {
   return widest;
 }
 
-/// Edges of one level stand all around the cell, as far as it is hidden at their height.
+/// Edges of one level stand all around the cell, as far as it is hidden at about their height: a
+/// top's edges and underside may fall on two neighbouring bands.
 bool is_amid_edges(const std::vector<CellBands>& bands, const maps::GridGeometry& g,
                    std::size_t cell, const std::array<TPoint2D, kDirections>& directions) {
+  const auto hidden = static_cast<std::uint16_t>(kUpperBands & ~bands[cell].free);
+  const int about = hidden | hidden << 1 | hidden >> 1;
   std::array<Directions, kHeightBands + 1> edges;  // by their lowest band
   for (std::size_t i = 0; i < directions.size(); ++i) {
-    const auto edge = static_cast<std::uint16_t>(
-        edge_ahead(bands, g, g.cell_of(cell), directions[i]) & ~bands[cell].free);
+    const auto edge =
+        static_cast<std::uint16_t>(edge_ahead(bands, g, g.cell_of(cell), directions[i]) & about);
     if (edge != 0) edges[static_cast<std::size_t>(lowest_bit(edge))].set(i);
   }
   for (std::size_t band = 0; band < kHeightBands; ++band) {
-    // One top's edges may fall on two neighbouring bands.
     if (widest_gap(edges[band] | edges[band + 1]) <= kWidestGap) return true;
   }
   return false;

@@ -19,8 +19,9 @@ constexpr int kCrowd = 8;
 constexpr float kClearBeyondM = 2.0f;  // farther than obstacles are marked, space is still cleared
 constexpr int kMostCounts = 250;
 constexpr int kHalfBands = 2 * kHeightBands;
-constexpr double kResolved = 1.0;      // rays expected in half a band: fewer cannot tell halves
-constexpr double kCrossedShare = 0.5;  // of them must pass both halves
+// Rays expected in half a band, from which on each half gets one at least, however rows fall.
+constexpr double kResolved = 1.0;
+constexpr double kCrossedShare = 0.25;  // of them must pass both halves
 
 float band_height(const GridConfig& c) {
   return static_cast<float>((c.obstacle_max_height_m - c.obstacle_min_height_m) / kHeightBands);
