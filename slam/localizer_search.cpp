@@ -17,7 +17,8 @@ constexpr double kSureScanShare = 0.7, kSureDepthShare = 0.8;  // to become OK
 constexpr double kPlausibleScanShare = 0.75;  // to be believed for a moment, unrecognised
 constexpr double kSamePlaceM = 0.7;           // no reason to go elsewhere
 constexpr int kSureScanPoints = 60;
-constexpr double kPlentyRecognitions = 2.0;  // make up for a scan that shows less
+constexpr double kTellingMargin = 0.04;  // makes up for a scan that shows less
+constexpr double kRefutedConfidence = 0.05;
 constexpr double kNoShapeMargin = 0.1;
 constexpr double kWorseThanRival = -0.05;
 constexpr double kMostRival = 0.2;  // share of the votes that another place may have
@@ -61,8 +62,8 @@ void Localizer::Impl::judge_places(const SeenView& view, bool is_new) {
   const bool there = state != State::kSearching &&
                      (place.translation - believed(time_s).translation).norm() < kSamePlaceM;
   if (there || (matches_here() && best->recognitions <= evidence.recognitions)) return;
-  // Odometry says it cannot be elsewhere; only a jump of the view would explain it.
-  if (!was_sure) {
+  // Odometry says it cannot be elsewhere: the view has jumped, or it was never there.
+  if (!was_sure || confidence_of(evidence) < kRefutedConfidence) {
     adopt(time_s, place);
   } else if (broken) {
     lose();
@@ -113,7 +114,7 @@ bool Localizer::Impl::is_convincing() const {
            evidence.recognitions >= kSureRecognition && evidence.rival_share <= kMostRival;
   }
   const bool enough_seen =
-      evidence.scan_points >= kSureScanPoints || evidence.recognitions >= kPlentyRecognitions;
+      evidence.scan_points >= kSureScanPoints || evidence.shape_margin >= kTellingMargin;
   return enough_seen && evidence.scan_share >= kSureScanShare &&
          evidence.rival_share <= kMostRival && confidence_of(evidence) >= kOkConfidence;
 }

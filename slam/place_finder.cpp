@@ -205,7 +205,7 @@ void PlaceFinder::clear() {
   views_.clear();
   points_.clear();
   candidates_.clear();
-  knows_all_rivals_ = true;
+  knows_all_rivals_ = false;
 }
 
 }  // namespace rovigo::slam

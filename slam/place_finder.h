@@ -88,7 +88,7 @@ class PlaceFinder {
   LocalScan local_scan_;
   std::vector<ScanPoint> points_;  ///< of the local scan, in base_link of the newest frame
   std::vector<PlaceCandidate> candidates_;
-  bool knows_all_rivals_ = true;  ///< the last search came to its end
+  bool knows_all_rivals_ = false;  ///< a search has been made, and the last one came to its end
 };
 
 }  // namespace rovigo::slam
