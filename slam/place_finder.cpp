@@ -41,12 +41,11 @@ std::vector<TPoint2D> some_of(const std::vector<ScanPoint>& points) {
 
 }  // namespace
 
-PlaceFinder::PlaceFinder(const maps::SavedMap& map, const CameraModel& camera,
-                         const Se3& base_from_camera, bool by_shape) {
-  if (!by_shape || map.grid.cells.empty()) return;
-  field_.emplace(map.grid);
-  scan_search_.emplace(map.grid);
-  depths_.emplace(map, camera, base_from_camera);
+PlaceFinder::PlaceFinder(const maps::OccupancyGrid& grid, DepthMemory depths)
+    : depths_(std::move(depths)) {
+  if (grid.cells.empty()) return;
+  field_.emplace(grid);
+  scan_search_.emplace(grid);
 }
 
 bool PlaceFinder::see(double time_s, const Se3& odom_from_base, const std::vector<ScanPoint>& scan,
@@ -54,7 +53,7 @@ bool PlaceFinder::see(double time_s, const Se3& odom_from_base, const std::vecto
   if (!field_) return false;
   const bool is_new = local_scan_.add(time_s, to_planar(odom_from_base), scan);
   if (is_new) {
-    views_.push_back({odom_from_base, depths_->view_of(depth, depth_unit_m)});
+    views_.push_back({odom_from_base, depths_.view_of(depth, depth_unit_m)});
     if (views_.size() > kMostViews) views_.pop_front();
   }
   points_ = local_scan_.points(to_planar(odom_from_base));
@@ -125,7 +124,7 @@ void PlaceFinder::refine(PlaceCandidate& candidate, const Se3& odom_from_base) c
 double PlaceFinder::surface_share(const Se3& map_from_odom) const {
   DepthAgreement sum;
   for (const View& v : views_) {
-    const DepthAgreement a = depths_->agreement(v.depth, map_from_odom * v.odom_from_base);
+    const DepthAgreement a = depths_.agreement(v.depth, map_from_odom * v.odom_from_base);
     sum.at_depth += a.at_depth;
     sum.seen_through += a.seen_through;
     sum.hidden += a.hidden;

@@ -39,9 +39,8 @@ struct PlaceSupport {
 
 class PlaceFinder {
  public:
-  /// `by_shape` false (a camera whose height is not known) leaves appearance alone to judge.
-  PlaceFinder(const maps::SavedMap& map, const CameraModel& camera, const Se3& base_from_camera,
-              bool by_shape);
+  /// An empty grid (a camera whose height is not known) leaves appearance alone to judge.
+  PlaceFinder(const maps::OccupancyGrid& grid, DepthMemory depths);
 
   /// A frame's depth image, and its scan in base_link; true if it showed enough new to judge again.
   bool see(double time_s, const Se3& odom_from_base, const std::vector<ScanPoint>& scan,
@@ -81,7 +80,7 @@ class PlaceFinder {
 
   std::optional<SignedDistanceField> field_;
   std::optional<ScanSearch> scan_search_;
-  std::optional<DepthMemory> depths_;
+  DepthMemory depths_;
   std::deque<View> views_;  ///< the newest of the local scan's
   LocalScan local_scan_;
   std::vector<ScanPoint> points_;  ///< of the local scan, in base_link of the newest frame

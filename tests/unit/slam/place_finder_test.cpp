@@ -28,10 +28,16 @@ maps::SavedMap map_of(const DepthRoom& room) {
   return map;
 }
 
+DepthMemory depths_of(const maps::SavedMap& map) {
+  DepthMemory depths(DepthRoom::camera(), DepthRoom::base_from_camera());
+  for (const auto& k : map.keyframes) depths.add(from_mrpt(k.map_from_base), k.depth_png);
+  return depths;
+}
+
 /// A rover that knows only its own motion since it was put down at `start`.
 struct Rover {
   Rover(const DepthRoom& r, const maps::SavedMap& map, const TPose2D& at)
-      : room(r), start(at), finder(map, DepthRoom::camera(), DepthRoom::base_from_camera(), true) {}
+      : room(r), start(at), finder(map.grid, depths_of(map)) {}
 
   void turns_to(double turned_rad) {
     odom = {0.0, 0.0, maps::wrap_angle(turned_rad)};
@@ -112,7 +118,7 @@ TEST(PlaceFinder, RecognitionsFadeAndAreForgotten) {
 }
 
 TEST(PlaceFinder, WithoutAGridAppearanceAloneDecides) {
-  PlaceFinder finder(maps::SavedMap{}, DepthRoom::camera(), DepthRoom::base_from_camera(), true);
+  PlaceFinder finder(maps::OccupancyGrid{}, depths_of({}));
   EXPECT_FALSE(finder.has_grid());
   const Se3 here = from_planar({1, 2, 3}), there = from_planar({4, 2, 0});
   finder.recognize(here, Se3{}, 1.0);
