@@ -37,7 +37,7 @@ void Localizer::Impl::begin(double time_s) {
   has_pose = true;
 }
 
-void Localizer::Impl::lose() {
+void Localizer::Impl::believe_nothing() {
   state = State::kSearching;
   was_sure = false;
   evidence = {};
@@ -45,7 +45,18 @@ void Localizer::Impl::lose() {
   doubt = false;
   contradicted_since_s.reset();
   tracked.clear();
+}
+
+/// The rover was carried: what was seen before belongs to another place.
+void Localizer::Impl::lose() {
+  believe_nothing();
   finder.clear();
+}
+
+/// A guess was wrong: nobody carried the rover, so what was seen on the way stays true.
+void Localizer::Impl::drop_guess(double time_s) {
+  finder.refute(believed(time_s), odom_from_base(time_s));
+  believe_nothing();
 }
 
 void Localizer::Impl::note_interval(double time_s) {

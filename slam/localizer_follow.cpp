@@ -86,9 +86,10 @@ void Localizer::Impl::miss(const SeenView& view, const std::vector<int>& local_l
   if (contradicted && !contradicted_since_s) contradicted_since_s = time_s;
   const bool carried_off = contradicted_since_s && misses >= kLostAfterMisses &&
                            time_s - *contradicted_since_s >= kLostAfterS;
-  if (carried_off || motion.carried() ||
-      prediction.sigma_position_m > config.localizer.lost_sigma_m) {
+  if (motion.carried() || prediction.sigma_position_m > config.localizer.lost_sigma_m) {
     lose();
+  } else if (carried_off) {
+    was_sure ? lose() : drop_guess(time_s);
   }
 }
 

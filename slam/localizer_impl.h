@@ -49,7 +49,10 @@ struct Localizer::Impl {
   Se3 odom_from_base(double time_s) { return odometry.predict(time_s).prior.map_from_base; }
   Se3 believed(double time_s) { return motion.predict(time_s).prior.map_from_base; }
   bool is_convincing() const;
+  bool matches_here() const;
+  void believe_nothing();
   void lose();
+  void drop_guess(double time_s);
   bool camera_is_silent(double time_s) const;
   PoseEstimate estimate(double time_s);
 

@@ -17,6 +17,8 @@ constexpr double kSureScanShare = 0.7, kSureDepthShare = 0.8;  // to become OK
 constexpr double kPlausibleScanShare = 0.75;  // to be believed for a moment, unrecognised
 constexpr double kSamePlaceM = 0.7;           // no reason to go elsewhere
 constexpr int kSureScanPoints = 60;
+constexpr double kTellingMargin = 0.04;  // makes up for a scan that shows less
+constexpr double kRefutedConfidence = 0.05;
 constexpr double kNoShapeMargin = 0.1;
 constexpr double kWorseThanRival = -0.05;
 constexpr double kMostRival = 0.2;  // share of the votes that another place may have
@@ -59,13 +61,18 @@ void Localizer::Impl::judge_places(const SeenView& view, bool is_new) {
   const Se3 place = best->map_from_odom * odom;
   const bool there = state != State::kSearching &&
                      (place.translation - believed(time_s).translation).norm() < kSamePlaceM;
-  if (there) return;
-  // Odometry says it cannot be elsewhere; only a jump of the view would explain it.
-  if (!was_sure) {
+  if (there || (matches_here() && best->recognitions <= evidence.recognitions)) return;
+  // Odometry says it cannot be elsewhere: the view has jumped, or it was never there.
+  if (!was_sure || confidence_of(evidence) < kRefutedConfidence) {
     adopt(time_s, place);
   } else if (broken) {
     lose();
   }
+}
+
+/// Views that match say more than a little more of shape elsewhere.
+bool Localizer::Impl::matches_here() const {
+  return state == State::kConfirming && misses == 0 && evidence.inliers >= kMinTelling;
 }
 
 void Localizer::Impl::adopt(double time_s, const Se3& map_from_base) {
@@ -106,7 +113,9 @@ bool Localizer::Impl::is_convincing() const {
     return evidence.depth_share >= kSureDepthShare && evidence.inliers >= kSureTelling &&
            evidence.recognitions >= kSureRecognition && evidence.rival_share <= kMostRival;
   }
-  return evidence.scan_points >= kSureScanPoints && evidence.scan_share >= kSureScanShare &&
+  const bool enough_seen =
+      evidence.scan_points >= kSureScanPoints || evidence.shape_margin >= kTellingMargin;
+  return enough_seen && evidence.scan_share >= kSureScanShare &&
          evidence.rival_share <= kMostRival && confidence_of(evidence) >= kOkConfidence;
 }
 

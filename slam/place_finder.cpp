@@ -18,6 +18,7 @@ constexpr double kLeastFit = 0.55, kBelowBest = 0.2;  // shares of the points
 constexpr std::size_t kMostPlaces = 6, kMostCandidates = 16;
 // A fortieth of the shape weighs as much as one clear view: views repeat, walls less so.
 constexpr double kShapeWeight = 40.0, kMostRecognitions = 4.0;
+constexpr double kRefutationWeight = 3.0;
 constexpr double kRefuted = 0.06;  // of the shape: so much worse than another place
 // Of a place found cell by cell, and of the odometry since.
 constexpr double kPlaceSigmaM = 0.08, kPlaceSigmaRad = 0.04;
@@ -28,7 +29,8 @@ bool is_same(const Se3& a, const Se3& b) {
 }
 
 double weight_of(const PlaceCandidate& c) {
-  return kShapeWeight * c.shape() + std::min(c.recognitions, kMostRecognitions);
+  return kShapeWeight * c.shape() + std::min(c.recognitions, kMostRecognitions) -
+         kRefutationWeight * c.refutations;
 }
 
 /// Evenly taken, so that a search costs the same in large rooms and small ones.
@@ -70,8 +72,17 @@ void PlaceFinder::recognize(const Se3& map_from_base, const Se3& odom_from_base,
   refine(candidates_.back(), odom_from_base);
 }
 
+void PlaceFinder::refute(const Se3& map_from_base, const Se3& odom_from_base) {
+  for (PlaceCandidate& c : candidates_) {
+    if (!is_same(c.map_from_odom * odom_from_base, map_from_base)) continue;
+    c.recognitions = 0.0;
+    c.refutations += 1.0;
+  }
+}
+
 void PlaceFinder::fade() {
   for (PlaceCandidate& c : candidates_) {
+    c.refutations *= kKeptShare;
     c.recognitions *= kKeptShare;
     if (c.recognitions < kForgottenWeight) c.recognitions = 0.0;
   }
@@ -194,7 +205,7 @@ void PlaceFinder::clear() {
   views_.clear();
   points_.clear();
   candidates_.clear();
-  knows_all_rivals_ = true;
+  knows_all_rivals_ = false;
 }
 
 }  // namespace rovigo::slam

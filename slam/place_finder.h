@@ -17,6 +17,7 @@ namespace rovigo::slam {
 struct PlaceCandidate {
   Se3 map_from_odom;
   double recognitions = 0.0;  ///< weights of the views recognised there, older ones fading
+  double refutations = 0.0;   ///< how often following it ended in contradiction, fading likewise
   double scan_share = 0.0;    ///< of the local scan, how much fits the grid there
   double surface_share = kUnjudgedShare;  ///< of what keyframes saw there, how much views show
 
@@ -48,7 +49,9 @@ class PlaceFinder {
 
   /// A view recognised: `weight` 1 for a clear one.
   void recognize(const Se3& map_from_base, const Se3& odom_from_base, double weight);
-  /// Older recognitions count less: once a frame.
+  /// Following this place has led to what the map does not show.
+  void refute(const Se3& map_from_base, const Se3& odom_from_base);
+  /// Older recognitions and refutations count less: once a frame.
   void fade();
 
   /// Searches the whole grid for places that the local scan fits (inside `region`, if given), and
@@ -85,7 +88,7 @@ class PlaceFinder {
   LocalScan local_scan_;
   std::vector<ScanPoint> points_;  ///< of the local scan, in base_link of the newest frame
   std::vector<PlaceCandidate> candidates_;
-  bool knows_all_rivals_ = true;  ///< the last search came to its end
+  bool knows_all_rivals_ = false;  ///< a search has been made, and the last one came to its end
 };
 
 }  // namespace rovigo::slam
