@@ -1,5 +1,7 @@
 #include "slam/heap.h"
 
+#include <cstddef>  // the C library says here whether it is glibc
+
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
