@@ -15,16 +15,10 @@ constexpr std::size_t kMostViews = 3;
 
 }  // namespace
 
-DepthMemory::DepthMemory(const maps::SavedMap& map, const CameraModel& camera,
-                         const Se3& base_from_camera)
-    : camera_(camera), base_from_camera_(base_from_camera) {
-  constexpr double kStoredUnitM = 0.001;
-  for (const maps::StoredKeyframe& k : map.keyframes) {
-    const cv::Mat depth = decode_depth(k.depth_png, {camera.width(), camera.height()});
-    const Se3 map_from_base = from_mrpt(k.map_from_base);
-    views_.push_back(
-        {map_from_base * base_from_camera, to_planar(map_from_base), view_of(depth, kStoredUnitM)});
-  }
+void DepthMemory::add(const Se3& map_from_base, const maps::Blob& depth_png) {
+  const cv::Mat depth = decode_depth(depth_png, {camera_.width(), camera_.height()});
+  views_.push_back({map_from_base * base_from_camera_, to_planar(map_from_base),
+                    view_of(depth, kStoredDepthUnitM)});
 }
 
 std::vector<const DepthMemory::View*> DepthMemory::nearby(const TPose2D& here) const {

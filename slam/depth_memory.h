@@ -18,8 +18,11 @@ struct DepthView {
 
 class DepthMemory {
  public:
-  /// Decodes every keyframe's depth image; those that cannot be read are left out.
-  DepthMemory(const maps::SavedMap& map, const CameraModel& camera, const Se3& base_from_camera);
+  DepthMemory(const CameraModel& camera, const Se3& base_from_camera)
+      : camera_(camera), base_from_camera_(base_from_camera) {}
+
+  /// Takes in a keyframe's depth image as the map holds it; one that cannot be read shows nothing.
+  void add(const Se3& map_from_base, const maps::Blob& depth_png);
 
   DepthView view_of(const cv::Mat& depth, double unit_m) const;
 

@@ -28,6 +28,8 @@ constexpr double kAccelerometerSigmaMS2 = 0.1;  // a rolling rover shakes
 constexpr double kAccelerometerBiasSigmaMS2 = 0.15;
 constexpr double kAccelerometerWalk = 1e-3;  // m/s^2 per square root of a second
 
+constexpr double kDelayWalk = 2e-5;  // s per square root of a second: clocks and filters wander
+
 constexpr double kFloorHeightSigmaM = 0.005, kFloorTiltSigmaRad = 0.01;
 constexpr double kSidewaysSigmaMS = 0.01;
 constexpr double kCountSigmaM = 3e-4, kCountSigmaRad = 1.2e-3;  // a tick of the encoders
@@ -60,6 +62,8 @@ InertialFilter::InertialFilter(const DeadReckoningConfig& config) : config_(conf
     state_.reset_error(S::kGyroBias + i, squared(config.gyro_bias_sigma_rad_s));
     state_.reset_error(S::kAccelerometerBias + i, squared(kAccelerometerBiasSigmaMS2));
   }
+  state_.gyro_delay_s = config.gyro_delay_s;
+  state_.reset_error(S::kGyroDelay, squared(config.gyro_delay_sigma_s));
   state_.reset_error(S::kSpeedScale, squared(config.wheel_speed_scale_sigma));
   state_.reset_error(S::kTurnScale, squared(config.wheel_turn_scale_sigma));
 }
@@ -77,7 +81,7 @@ void InertialFilter::place(const TPose2D& map_from_base, double sigma_position_m
 }
 
 MotionCalibration InertialFilter::calibration() const {
-  return {state_.gyro_bias.z(), state_.speed_scale, state_.turn_scale};
+  return {state_.gyro_bias.z(), state_.speed_scale, state_.turn_scale, state_.gyro_delay_s};
 }
 
 TTwist2D InertialFilter::twist() const {
@@ -132,6 +136,7 @@ void InertialFilter::propagate(double dt) {
   state_.propagate(dt, {.turning_rad_s2 = kTurningRadS2,
                         .jerk_m_s3 = kJerkMS3,
                         .gyro_walk_rad_s2 = config_.gyro_bias_walk_rad_s2,
+                        .delay_walk = kDelayWalk,
                         .accelerometer_walk = kAccelerometerWalk,
                         .odometer_m2 = rolling.along_m2,
                         .wheel_turn_rad2 = gyro_rate_ ? 0.0 : rolling.heading_rad2,
@@ -174,6 +179,14 @@ void InertialFilter::add_gyro(double time_s, const Eigen::Vector3d& rate_rad_s) 
     const std::array<Term, 2> terms = {{{S::kRate + i, 1.0}, {S::kGyroBias + i, 1.0}}};
     state_.update(terms, rate_rad_s(i) - state_.rate(i) - state_.gyro_bias(i), variance);
   }
+  if (!fresh) led_rate_rad_s_.reset();
+  make_up_gyro_delay();
+}
+
+/// A rate that nobody saw coming is in the heading already, if at all.
+void InertialFilter::make_up_gyro_delay() {
+  if (led_rate_rad_s_) state_.make_up_delay(state_.rate.z() - *led_rate_rad_s_);
+  led_rate_rad_s_ = state_.rate.z();
 }
 
 void InertialFilter::add_accelerometer(double time_s, const Eigen::Vector3d& force) {
@@ -223,13 +236,15 @@ void InertialFilter::add_wheels(double time_s, const TPose2D& odom_from_base) {
       measure_wheels(wheels, gripped_m);
     }
     judge_carrying(wheels);
-    step_ = MotionStep{.begin_s = odometry_time_s_,
-                       .end_s = time_s,
-                       .distance_m = gripped_m,
-                       .turn_rad = gyro_rate_ ? raw_gyro_turn_rad_ : wheels.turn_rad,
-                       .has_gyro = gyro_rate_.has_value(),
-                       .slipping = slipping(),
-                       .standing = standing_};
+    step_ =
+        MotionStep{.begin_s = odometry_time_s_,
+                   .end_s = time_s,
+                   .distance_m = gripped_m,
+                   .turn_rad = gyro_rate_ ? raw_gyro_turn_rad_ : wheels.turn_rad,
+                   .turn_rate_change_rad_s = gyro_rate_ ? gyro_rate_->z() - step_rate_rad_s_ : 0.0,
+                   .has_gyro = gyro_rate_.has_value(),
+                   .slipping = slipping(),
+                   .standing = standing_};
   } else if (!odometry_ || dt >= 2.0) {
     forget_wheel_count();
   }
@@ -237,6 +252,7 @@ void InertialFilter::add_wheels(double time_s, const TPose2D& odom_from_base) {
   odometry_ = odom_from_base;
   odometry_time_s_ = time_s;
   gyro_turn_rad_ = raw_gyro_turn_rad_ = 0.0;
+  step_rate_rad_s_ = gyro_rate_ ? gyro_rate_->z() : 0.0;
 }
 
 /// What the wheels say of the way, with slip taken off.
@@ -348,6 +364,7 @@ void InertialFilter::hold_still() {
     state_.update(rate, -state_.rate(i), squared(kStillSigmaRadS));
     state_.update(acceleration, -state_.acceleration(i), squared(kStillSigmaMS2));
   }
+  if (gyro_rate_) make_up_gyro_delay();
   forget_wheel_count();
 }
 
@@ -427,12 +444,14 @@ void InertialFilter::correct(const PlanarInformation& look, double floor_m, doub
   const S::Vector error = gain * (h * away - g);
   if (!error.allFinite() || !gain.allFinite()) return;
   state_.inject(error);
-  // A jump of the pose (carried, wrongly recognised) must not leave wheels that no rover has.
+  // A jump of the pose (carried, wrongly recognised) must not leave sensors that no rover has.
   const auto within = [](double scale, double sigma) {
     return std::clamp(scale, -kMostScaleSigmas * sigma, kMostScaleSigmas * sigma);
   };
   state_.speed_scale = within(state_.speed_scale, config_.wheel_speed_scale_sigma);
   state_.turn_scale = within(state_.turn_scale, config_.wheel_turn_scale_sigma);
+  state_.gyro_delay_s = config_.gyro_delay_s + within(state_.gyro_delay_s - config_.gyro_delay_s,
+                                                      config_.gyro_delay_sigma_s);
   state_.map_from_base = normalized(state_.map_from_base);
   p -= gain * h * columns.transpose();
   p = 0.5 * (p + p.transpose()).eval();

@@ -15,12 +15,13 @@ namespace rovigo::slam {
 
 /// Error-state Kalman filter of a rover on its floor. Every sensor is optional.
 /// Model: angular rate constant, acceleration fading; gyro = rate + bias; accelerometer =
-/// acceleration + rate x velocity + gravity + bias; the wheels count speed / (1 + speed scale) and,
-/// without a gyro, turn rate / (1 + turn scale); the body slips neither sideways nor off the floor.
-/// While the wheels stand still velocity and rate are zero, which teaches the biases.
-/// Slip: where wheels and gyro disagree on the turn rate a wheel slips, and the speed follows the
-/// wheel that grips; where wheels and accelerometer disagree on a change of speed both slip, and
-/// the accelerometer is followed.
+/// acceleration + rate x velocity + gravity + bias; the gyro tells late by its delay (Li & Mourikis
+/// 2014: what matters is the delay against the camera); the wheels count speed / (1 + speed scale)
+/// and, without a gyro, turn rate / (1 + turn scale); the body slips neither sideways nor off the
+/// floor. While the wheels stand still velocity and rate are zero, which teaches the biases. Slip:
+/// where wheels and gyro disagree on the turn rate a wheel slips, and the speed follows the wheel
+/// that grips; where wheels and accelerometer disagree on a change of speed both slip, and the
+/// accelerometer is followed.
 class InertialFilter {
  public:
   explicit InertialFilter(const DeadReckoningConfig& config);
@@ -72,6 +73,7 @@ class InertialFilter {
   bool looks_standing(const WheelStep& wheels);
   void leave_standing(const WheelStep& wheels);
   void hold_still();
+  void make_up_gyro_delay();
   void measure_wheels(const WheelStep& wheels, double gripped_m);
   void measure_odometer(int counter, int speed, double innovation, double dt);
   void hold_to_floor();
@@ -86,11 +88,13 @@ class InertialFilter {
   std::optional<double> gyro_time_s_, accelerometer_time_s_;
   std::optional<TPose2D> odometry_;
   double odometry_time_s_ = 0.0;
-  double gyro_turn_rad_ = 0.0;       ///< unbiased, since the last reading of the wheels
-  double raw_gyro_turn_rad_ = 0.0;   ///< as read, likewise
-  double disagreement_rad_s_ = 0.0;  ///< wheels minus gyro, smoothed
-  double felt_speed_m_s_ = 0.0;      ///< by the accelerometer, drawn to the wheels' slowly
-  double resting_s_ = 0.0;           ///< without a tick of the wheels
+  std::optional<double> led_rate_rad_s_;  ///< about the vertical, whose delay is made up for
+  double step_rate_rad_s_ = 0.0;          ///< of the gyro, at the last reading of the wheels
+  double gyro_turn_rad_ = 0.0;            ///< unbiased, since the last reading of the wheels
+  double raw_gyro_turn_rad_ = 0.0;        ///< as read, likewise
+  double disagreement_rad_s_ = 0.0;       ///< wheels minus gyro, smoothed
+  double felt_speed_m_s_ = 0.0;           ///< by the accelerometer, drawn to the wheels' slowly
+  double resting_s_ = 0.0;                ///< without a tick of the wheels
   std::optional<MotionStep> step_;
   double turned_standing_rad_ = 0.0;  ///< by the gyro while the wheels stood
   bool one_slips_ = false, both_slip_ = false, standing_ = false, carried_ = false;

@@ -59,6 +59,7 @@ void InertialState::add_noise(double dt, const InertialNoise& noise) {
     covariance(row, column) += variance;
     if (row != column) covariance(column, row) += variance;
   };
+  add(kGyroDelay, kGyroDelay, noise.delay_walk * noise.delay_walk * dt);
   for (int i = 0; i < 3; ++i) {
     add(kGyroBias + i, kGyroBias + i, noise.gyro_walk_rad_s2 * noise.gyro_walk_rad_s2 * dt);
     add(kAccelerometerBias + i, kAccelerometerBias + i,
@@ -127,6 +128,16 @@ void InertialState::add_doubt(int index, double variance, double ago_s) {
   covariance.noalias() += effect * effect.transpose();
 }
 
+/// Adding the rates up gives the heading of one delay ago: since then the body has turned on by
+/// rate times delay. Added change by change, so that a heading found otherwise stays as it is.
+void InertialState::make_up_delay(double rate_change_rad_s) {
+  map_from_base.rotation =
+      map_from_base.rotation * so3_exp({0.0, 0.0, gyro_delay_s * rate_change_rad_s});
+  const int heading = kAttitude + 2;
+  covariance.row(heading) += rate_change_rad_s * covariance.row(kGyroDelay);
+  covariance.col(heading) += rate_change_rad_s * covariance.col(kGyroDelay);
+}
+
 double InertialState::innovation_variance(std::span<const Term> terms, double variance) const {
   for (const Term& a : terms) {
     for (const Term& b : terms) {
@@ -161,6 +172,7 @@ void InertialState::inject(const Vector& error) {
   wheel_turn_rad += error(kWheelTurn);
   gyro_bias += error.segment<3>(kGyroBias);
   accelerometer_bias += error.segment<3>(kAccelerometerBias);
+  gyro_delay_s += error(kGyroDelay);
   speed_scale += error(kSpeedScale);
   turn_scale += error(kTurnScale);
 }

@@ -15,6 +15,7 @@ struct InertialNoise {
   double turning_rad_s2 = 0.0;      ///< on the angular rate
   double jerk_m_s3 = 0.0;           ///< on the acceleration
   double gyro_walk_rad_s2 = 0.0;    ///< on the gyro's bias
+  double delay_walk = 0.0;          ///< on the gyro's delay, seconds
   double accelerometer_walk = 0.0;  ///< on the accelerometer's bias, m/s^2
   double odometer_m2 = 0.0;         ///< variance that the step adds to the wheels' distance
   double wheel_turn_rad2 = 0.0;     ///< likewise to the wheels' turn
@@ -30,11 +31,12 @@ struct InertialNoise {
 /// Position (map), attitude, velocity, angular rate and acceleration (body; the derivative of the
 /// body's velocity): the 15 states of the thesis. Beyond them what the wheels should have counted
 /// since their last reading (distance and turn: their readings then add up, however coarse the
-/// encoders), the biases of gyro and accelerometer, and the wheels' scale errors in speed and turn.
+/// encoders), the biases of gyro and accelerometer, how late the gyro tells of a turn, and the
+/// wheels' scale errors in speed and turn.
 class InertialState {
  public:
   static constexpr int kMoving = 17;  ///< states that change with motion; the others only walk
-  static constexpr int kSize = 25;
+  static constexpr int kSize = 26;
   using Vector = Eigen::Matrix<double, kSize, 1>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
   /// Where each part of the error starts; attitude: a small turn of the body.
@@ -48,8 +50,9 @@ class InertialState {
     kWheelTurn = 16,
     kGyroBias = 17,
     kAccelerometerBias = 20,
-    kSpeedScale = 23,
-    kTurnScale = 24
+    kGyroDelay = 23,
+    kSpeedScale = 24,
+    kTurnScale = 25
   };
 
   Se3 map_from_base;
@@ -61,6 +64,7 @@ class InertialState {
   double odometer_m = 0.0, wheel_turn_rad = 0.0;
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();
   Eigen::Vector3d accelerometer_bias = Eigen::Vector3d::Zero();
+  double gyro_delay_s = 0.0;
   double speed_scale = 0.0, turn_scale = 0.0;
   Matrix covariance = Matrix::Zero();
 
@@ -72,6 +76,9 @@ class InertialState {
   /// Doubt of a velocity, rate or acceleration that came up `ago_s` seconds ago, and what it has
   /// done since to pose and wheel counts. It has nothing to do with biases and scales.
   void add_doubt(int index, double variance, double ago_s);
+
+  /// The rate about the vertical changed by so much: the gyro told of it late by its delay.
+  void make_up_delay(double rate_change_rad_s);
 
   /// Part of a measurement's derivative.
   struct Term {

@@ -37,4 +37,6 @@ maps::Blob encode_depth(const CameraFrame& frame);
 /// image.
 cv::Mat decode_depth(const maps::Blob& png, const cv::Size& size);
 
+inline constexpr double kStoredDepthUnitM = 0.001;  ///< of a keyframe's depth image
+
 }  // namespace rovigo::slam

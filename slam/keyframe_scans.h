@@ -7,8 +7,6 @@
 
 namespace rovigo::slam {
 
-inline constexpr double kStoredDepthUnitM = 0.001;  ///< of a keyframe's depth image
-
 /// Where the camera of a keyframe was, above the floor below it.
 struct LevelView {
   int keyframe = 0;

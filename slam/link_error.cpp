@@ -15,7 +15,7 @@ constexpr double kKernel = 3.0;  // sigmas: slip that nobody noticed loses its v
 constexpr double kFloorM = 0.001, kFloorRad = 0.0005;  // no link is better than this
 constexpr double kFloorHeightM = 0.005, kFloorTiltRad = 0.005;
 // How far calibrations may move from block to block.
-constexpr double kBiasStepRadS = 1e-3, kScaleStep = 2e-3;
+constexpr double kBiasStepRadS = 1e-3, kScaleStep = 2e-3, kDelayStepS = 2e-4;
 
 struct LinkError {
   LinkError(const MotionLink& l, const Se3& from_pose, const Se3& to_pose)
@@ -34,8 +34,8 @@ struct LinkError {
     const Eigen::Matrix<T, 3, 1> between =
         from.rotation.transpose() * (to.translation - from.translation);
     const Eigen::Matrix<T, 3, 3> turn = from.rotation.transpose() * to.rotation;
-    Eigen::Matrix<T, 3, 1> moved;
-    for (int i = 0; i < 3; ++i) moved(i) = calibration[i] - T(link.calibration(i));
+    Eigen::Matrix<T, 4, 1> moved;
+    for (int i = 0; i < 4; ++i) moved(i) = calibration[i] - T(link.calibration(i));
     const Eigen::Matrix<T, 3, 1> by = link.by_calibration.cast<T>() * moved;
     const T yaw_error = atan2(turn(1, 0), turn(0, 0)) - (T(link.from_from_to.phi) + by(2));
     Eigen::Matrix<T, 3, 1> error;
@@ -59,19 +59,19 @@ struct LinkError {
 struct WalkError {
   template <class T>
   bool operator()(const T* before, const T* after, T* residual) const {
-    for (int i = 0; i < 3; ++i) residual[i] = (after[i] - before[i]) / T(sigma(i));
+    for (int i = 0; i < 4; ++i) residual[i] = (after[i] - before[i]) / T(sigma(i));
     return true;
   }
-  Eigen::Vector3d sigma;
+  MotionCalibration sigma;
 };
 
 struct NominalError {
   template <class T>
   bool operator()(const T* calibration, T* residual) const {
-    for (int i = 0; i < 3; ++i) residual[i] = calibration[i] / T(sigma(i));
+    for (int i = 0; i < 4; ++i) residual[i] = (calibration[i] - T(nominal(i))) / T(sigma(i));
     return true;
   }
-  Eigen::Vector3d sigma;
+  MotionCalibration nominal, sigma;
 };
 
 }  // namespace
@@ -83,9 +83,10 @@ LinkErrors::LinkErrors(const std::vector<MotionLink>& links, const DeadReckoning
   for (const MotionLink& l : links_) begin_s_ = std::min(begin_s_, l.begin_s);
   for (const MotionLink& l : links_) {
     const std::size_t block = block_of(l);
-    if (calibrations_.size() <= block) calibrations_.resize(block + 1, {0.0, 0.0, 0.0});
+    if (calibrations_.size() <= block)
+      calibrations_.resize(block + 1, {0.0, 0.0, 0.0, config_.gyro_delay_s});
     if (l.by_calibration.isZero()) continue;
-    Eigen::Map<Eigen::Vector3d>(calibrations_[block].data()) = l.calibration;
+    Eigen::Map<MotionCalibration>(calibrations_[block].data()) = l.calibration;
   }
 }
 
@@ -97,7 +98,7 @@ void LinkErrors::add_to(ceres::Problem& problem, const std::vector<Se3>& poses,
                         const StepOf& step_of) {
   for (const MotionLink& l : links_) {
     const auto from = static_cast<std::size_t>(l.from), to = static_cast<std::size_t>(l.to);
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<LinkError, 6, 6, 6, 3>(
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<LinkError, 6, 6, 6, 4>(
                                  new LinkError(l, poses[from], poses[to])),
                              &kernel_, step_of(l.from), step_of(l.to),
                              calibrations_[block_of(l)].data());
@@ -106,15 +107,16 @@ void LinkErrors::add_to(ceres::Problem& problem, const std::vector<Se3>& poses,
 }
 
 void LinkErrors::add_walks(ceres::Problem& problem) {
-  const Eigen::Vector3d nominal(config_.gyro_bias_sigma_rad_s, config_.wheel_speed_scale_sigma,
-                                config_.wheel_turn_scale_sigma);
+  const MotionCalibration nominal(0.0, 0.0, 0.0, config_.gyro_delay_s);
+  const MotionCalibration sigma(config_.gyro_bias_sigma_rad_s, config_.wheel_speed_scale_sigma,
+                                config_.wheel_turn_scale_sigma, config_.gyro_delay_sigma_s);
   problem.AddResidualBlock(
-      new ceres::AutoDiffCostFunction<NominalError, 3, 3>(new NominalError{nominal}), nullptr,
-      calibrations_.front().data());
-  const Eigen::Vector3d walk(kBiasStepRadS, kScaleStep, kScaleStep);
+      new ceres::AutoDiffCostFunction<NominalError, 4, 4>(new NominalError{nominal, sigma}),
+      nullptr, calibrations_.front().data());
+  const MotionCalibration walk(kBiasStepRadS, kScaleStep, kScaleStep, kDelayStepS);
   for (std::size_t i = 1; i < calibrations_.size(); ++i) {
     problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<WalkError, 3, 3, 3>(new WalkError{walk}), nullptr,
+        new ceres::AutoDiffCostFunction<WalkError, 4, 4, 4>(new WalkError{walk}), nullptr,
         calibrations_[i - 1].data(), calibrations_[i].data());
   }
 }

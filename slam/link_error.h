@@ -24,7 +24,7 @@ class LinkErrors {
   /// `poses`: what the steps step away from, by keyframe. The object must outlive the problem.
   void add_to(ceres::Problem& problem, const std::vector<Se3>& poses, const StepOf& step_of);
 
-  std::vector<std::array<double, 3>>& calibrations() { return calibrations_; }
+  std::vector<std::array<double, 4>>& calibrations() { return calibrations_; }
 
  private:
   std::size_t block_of(const MotionLink& link) const;
@@ -34,7 +34,7 @@ class LinkErrors {
   DeadReckoningConfig config_;
   ceres::CauchyLoss kernel_;
   double begin_s_ = 0.0;
-  std::vector<std::array<double, 3>> calibrations_;
+  std::vector<std::array<double, 4>> calibrations_;
 };
 
 }  // namespace rovigo::slam

@@ -4,148 +4,29 @@
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationOdometry.h>
 
-#include <algorithm>
-#include <cmath>
-
-#include "slam/camera_frame.h"
-#include "slam/grid_match.h"
-#include "slam/local_map.h"
-#include "slam/localizer_depth_check.h"
+#include "slam/localizer_impl.h"
 #include "slam/map_storage.h"
-#include "slam/motion_model.h"
-#include "slam/place_finder.h"
-#include "slam/relocalizer.h"
-#include "slam/view_continuity.h"
 
 namespace rovigo::slam {
 
 namespace {
 
-constexpr double kFixSigmaM = 0.05;  // of a freshly recognised place, before frames confirm it
-constexpr double kFixSigmaRad = 0.03;
-constexpr double kPriorGates = 4.0;  // sigmas around a given pose that are searched
-constexpr int kPlenty = 150;         // features; fewer and the camera may be covered or dark
-constexpr int kTriesSearching = 4;   // places a frame, by geometry
-constexpr int kTriesConfirming = 2;
-constexpr int kSpotCheckEvery = 15;       // frames: does the whole map agree with what is tracked?
-constexpr double kLostAfterS = 0.3;       // of contradiction, after the view has jumped,
-constexpr int kLostAfterMisses = 3;       // and so many frames
-constexpr double kReconfirmAfterS = 0.5;  // blind for longer, the rover may be anywhere
-constexpr double kFrameGaps = 2.5;        // usual intervals without a frame: the camera fell silent
-constexpr int kMinTelling = 15, kSureTelling = 20;  // matches that tell one place from another
-constexpr double kSureScanShare = 0.7, kSureDepthShare = 0.8;  // to become OK
-constexpr double kPlausibleScanShare =
-    0.75;                                // to be believed for a moment, with no view recognised
-constexpr double kHeldScanShare = 0.75;  // of one view, to hold a pose by it alone
-constexpr int kSureScanPoints = 60;
-constexpr double kNoShapeMargin = 0.1;
+constexpr double kPriorGates = 4.0;   // sigmas around a given pose that are searched
+constexpr int kSpotCheckEvery = 15;   // frames: does the whole map agree with what is tracked?
+constexpr double kFrameGaps = 2.5;    // usual intervals without a frame: the camera fell silent
 constexpr double kLeastBelief = 0.5;  // in a place not yet confirmed, to call it more than LOST
-constexpr double kWorseThanRival = -0.05;
-constexpr double kMostRival = 0.2,
-                 kMostRivalTracking = 0.35;  // share of the votes that another place may have
-constexpr double kStillScanShare = 0.5;
+constexpr double kMostRivalTracking = 0.35;  // share of the votes that another place may have
 // Of the confidence, while a frame does not fit: after a jump of the view, and while it goes on.
 constexpr double kBrokenShare = 0.3, kUnbrokenShare = 0.95;
-constexpr double kSureRecognition = 0.9;  // where views cannot be added up
-constexpr double kFullWeightInliers = 40.0;
-// A view this near a mapped one has to match it; elsewhere the map knows nothing to contradict.
-constexpr double kSameViewM = 0.7;
-constexpr double kSameViewRad = 0.45;
-// What contradicts a pose: this much to judge by, and this little of it as the map has it.
-constexpr int kEnoughLandmarks = 20, kEnoughAtDepth = 60;
-constexpr std::size_t kEnoughPoints = 40;
-constexpr double kLeastDepthShare = 0.6, kLeastScanShare = 0.5, kLeastMatchedShare = 0.08;
-
-/// One view against the map at one pose.
-struct ViewCheck {
-  double depth_share = 1.0;    ///< DepthAgreement::share(), with enough to judge
-  double scan_share = 1.0;     ///< of the depth scan, how much lies on the grid's walls
-  double matched_share = 0.0;  ///< of the landmarks at their depth, how many matched
-  bool contradicts = false;
-};
 
 }  // namespace
 
-struct Localizer::Impl {
-  enum class State { kSearching, kConfirming, kTracking };
-
-  struct View {
-    CameraFrame frame;
-    FeatureSet features;
-    std::vector<ScanPoint> scan;  ///< empty where the camera's height is not known
-    bool shows_plenty() const { return static_cast<int>(features.size()) >= kPlenty; }
-  };
-
-  Impl(const SlamConfig& settings, const Rig& r, const maps::SavedMap& saved,
-       const std::optional<PosePrior>& given)
-      : config(settings),
-        rig(r),
-        map(restore_landmark_map(saved, settings)),
-        motion(settings, r),
-        odometry(settings, r),
-        continuity(map.camera(), map.base_from_camera()),
-        finder(saved, map.camera(), map.base_from_camera(), motion.planar()) {
-    for (const Keyframe& k : map.keyframes()) relocalizer.add(map, k.id);
-    repeated = relocalizer.repeated_landmarks(map);
-    if (given) {
-      prior = PoseRegion{from_planar(given->map_from_base), kPriorGates * given->sigma_position_m,
-                         kPriorGates * given->sigma_heading_rad};
-      prior_sigma_m = given->sigma_position_m;
-      prior_sigma_rad = given->sigma_heading_rad;
-    }
-  }
-
-  void begin(double time_s);
-  void on_frame(const mrpt::obs::CObservation3DRangeScan& scan);
-  void note_interval(double time_s);
-  void look_everywhere(const View& view);
-  void judge_places(const View& view, bool is_new);
-  void adopt(double time_s, const Se3& map_from_base);
-  bool hold_by_scan(const View& view, const std::vector<int>& local_landmarks);
-  void follow(const View& view);
-  void take_in(const View& view, const TrackResult& result, const ViewCheck& seen);
-  void note_agreement(double time_s, int inliers, const ViewCheck& seen);
-  void miss(const View& view, const std::vector<int>& local_landmarks,
-            const MotionPrediction& prediction);
-  ViewCheck check(const View& view, const std::vector<int>& landmarks, const Se3& pose,
-                  int inliers) const;
-  int telling(const std::vector<FeatureMatch>& matches) const;
-  void weigh_support(double time_s);
-  Se3 odom_from_base(double time_s) { return odometry.predict(time_s).prior.map_from_base; }
-  Se3 believed(double time_s) { return motion.predict(time_s).prior.map_from_base; }
-  bool is_convincing() const;
-  void lose();
-  bool map_knows_view(const Se3& map_from_base) const;
-  bool camera_is_silent(double time_s) const;
-  PoseEstimate estimate(double time_s);
-
-  SlamConfig config;
-  Rig rig;
-  LandmarkMap map;
-  MotionModel motion;
-  MotionModel odometry;  ///< never corrected: ties together what is seen while searching
-  ViewContinuity continuity;
-  PlaceFinder finder;
-  Relocalizer relocalizer;
-  std::vector<bool> repeated;  ///< by landmark: shows no particular place
-  std::optional<PoseRegion> prior;
-  double prior_sigma_m = 0.0, prior_sigma_rad = 0.0;
-
-  State state = State::kSearching;
-  bool begun = false;
-  bool has_pose = false;  ///< some pose to carry on from, right or not
-  std::vector<int> tracked;
-  LocalizerEvidence evidence;
-  int frames = 0;
-  int misses = 0;         ///< frames in a row that matched nothing
-  bool broken = false;    ///< the view has jumped since a frame last agreed
-  bool was_sure = false;  ///< of this place, before the camera was blind
-  bool doubt = false;     ///< the newest frame shows plenty and does not fit
-  std::optional<double> contradicted_since_s;
-  double last_fix_s = -1e9;
-  double last_frame_s = -1e9;
-  double frame_interval_s = 0.1;  ///< usual one
-};
+void Localizer::Impl::expect_near(const PosePrior& given) {
+  prior = PoseRegion{from_planar(given.map_from_base), kPriorGates * given.sigma_position_m,
+                     kPriorGates * given.sigma_heading_rad};
+  prior_sigma_m = given.sigma_position_m;
+  prior_sigma_rad = given.sigma_heading_rad;
+}
 
 void Localizer::Impl::begin(double time_s) {
   if (begun) return;
@@ -156,7 +37,7 @@ void Localizer::Impl::begin(double time_s) {
   has_pose = true;
 }
 
-void Localizer::Impl::lose() {
+void Localizer::Impl::believe_nothing() {
   state = State::kSearching;
   was_sure = false;
   evidence = {};
@@ -164,17 +45,18 @@ void Localizer::Impl::lose() {
   doubt = false;
   contradicted_since_s.reset();
   tracked.clear();
+}
+
+/// The rover was carried: what was seen before belongs to another place.
+void Localizer::Impl::lose() {
+  believe_nothing();
   finder.clear();
 }
 
-/// Whether somebody looked this way from here when the map was made.
-bool Localizer::Impl::map_knows_view(const Se3& map_from_base) const {
-  const TPose2D here = to_planar(map_from_base);
-  return std::any_of(map.keyframes().begin(), map.keyframes().end(), [&](const Keyframe& k) {
-    const TPose2D there = to_planar(k.map_from_base);
-    return maps::distance(maps::position_of(here), maps::position_of(there)) < kSameViewM &&
-           std::abs(maps::wrap_angle(here.phi - there.phi)) < kSameViewRad;
-  });
+/// A guess was wrong: nobody carried the rover, so what was seen on the way stays true.
+void Localizer::Impl::drop_guess(double time_s) {
+  finder.refute(believed(time_s), odom_from_base(time_s));
+  believe_nothing();
 }
 
 void Localizer::Impl::note_interval(double time_s) {
@@ -187,199 +69,25 @@ bool Localizer::Impl::camera_is_silent(double time_s) const {
   return time_s - last_frame_s > kFrameGaps * frame_interval_s;
 }
 
-/// Compares the view with the whole map; what geometry accepts speaks for a place.
-void Localizer::Impl::look_everywhere(const View& view) {
-  const PlaceMatchConfig place{.min_inliers = config.localizer.relocalization_inliers,
-                               .seed = static_cast<std::uint64_t>(frames)};
-  const int tries = state == State::kSearching ? kTriesSearching : kTriesConfirming;
-  const auto found =
-      relocalizer.find_places(map, view.features, motion.planar(), prior, tries, place);
-  for (const Relocalization& r : found) {
-    const PoseSolution& solution = r.match.solution;
-    const int clear = telling(r.match.matches);
-    if (clear < kMinTelling) continue;
-    const auto landmarks = map.landmarks_of({r.keyframe});
-    if (check(view, landmarks, solution.map_from_base, solution.inliers).contradicts) continue;
-    finder.recognize(solution.map_from_base, odom_from_base(view.frame.time_s),
-                     std::min(1.0, clear / kFullWeightInliers));
-  }
-}
-
-/// Goes to the place that most speaks for, if it is not where the rover is believed to be.
-void Localizer::Impl::judge_places(const View& view, bool is_new) {
-  const double time_s = view.frame.time_s;
-  const Se3 odom = odom_from_base(time_s);
-  if (is_new) {
-    finder.search(odom, prior);
-  } else {
-    finder.judge(odom);
-  }
-  const auto best = finder.best();
-  if (!best || (best->recognitions == 0.0 && best->scan_share < kPlausibleScanShare)) return;
-  const Se3 place = best->map_from_odom * odom;
-  const bool there = state != State::kSearching &&
-                     (place.translation - believed(time_s).translation).norm() < kSameViewM;
-  if (there) return;
-  // Odometry says it cannot be elsewhere; only a jump of the view would explain it.
-  if (!was_sure) {
-    adopt(time_s, place);
-  } else if (broken) {
-    lose();
-  }
-}
-
-void Localizer::Impl::adopt(double time_s, const Se3& map_from_base) {
-  motion.place(time_s, map_from_base, kFixSigmaM, kFixSigmaRad);
-  has_pose = true;
-  state = State::kConfirming;
-  was_sure = false;
-  misses = 0;
-  doubt = false;
-  contradicted_since_s.reset();
-  evidence = {};
-  last_fix_s = time_s;
-  tracked.clear();
-}
-
-/// What speaks for the place believed, and for others.
-void Localizer::Impl::weigh_support(double time_s) {
-  const PlaceSupport support = finder.support(believed(time_s), odom_from_base(time_s));
-  evidence.recognitions = support.recognitions;
-  evidence.rival_share = support.rival_recognition_share();
-  evidence.scan_share = support.scan_share;
-  evidence.surface_share = support.surface_share;
-  // Without a floor there is no shape to compare; matches that fix all six degrees of freedom have
-  // to speak for themselves.
-  evidence.shape_margin = finder.has_grid() ? support.shape - support.rival_shape : kNoShapeMargin;
-  evidence.scan_points = support.scan_points;
-}
-
-int Localizer::Impl::telling(const std::vector<FeatureMatch>& matches) const {
-  return static_cast<int>(std::count_if(matches.begin(), matches.end(), [&](const auto& m) {
-    const bool stands = !motion.planar() || is_upright(map.landmark(m.landmark));
-    return stands && !repeated[static_cast<std::size_t>(m.landmark)];
-  }));
-}
-
-/// What the view shows, compared with what the map has at `pose`: are its landmarks where they
-/// should be, does the depth scan lie on its walls, does what is there match?
-ViewCheck Localizer::Impl::check(const View& view, const std::vector<int>& landmarks,
-                                 const Se3& pose, int inliers) const {
-  const DepthAgreement depth = depth_agreement(map, landmarks, view.frame, pose, motion.planar());
-  ViewCheck out;
-  if (depth.judged() >= kEnoughLandmarks) out.depth_share = depth.share();
-  if (finder.has_grid() && view.scan.size() >= kEnoughPoints) {
-    out.scan_share = scan_agreement(finder.field(), view.scan, to_planar(pose)).share;
-  }
-  out.matched_share = std::min(1.0, static_cast<double>(inliers) / std::max(1, depth.at_depth));
-  out.contradicts = out.depth_share < kLeastDepthShare || out.scan_share < kLeastScanShare ||
-                    (depth.at_depth >= kEnoughAtDepth && out.matched_share < kLeastMatchedShare);
-  return out;
-}
-
-void Localizer::Impl::follow(const View& view) {
-  const MotionPrediction prediction = motion.predict(view.frame.time_s);
-  const LocalMap local = select_local_map(map, tracked, prediction.prior.map_from_base);
-  const TrackResult result = track_frame(map, local.landmarks, view.features, prediction);
-  if (result.status == TrackStatus::kTracked) {
-    const PoseSolution& solution = result.solution;
-    const ViewCheck seen = check(view, local.landmarks, solution.map_from_base, solution.inliers);
-    if (!seen.contradicts) {
-      take_in(view, result, seen);
-      return;
-    }
-  }
-  if (!hold_by_scan(view, local.landmarks)) miss(view, local.landmarks, prediction);
-}
-
-/// Where the map knows no features, or not from this side, its walls still hold the pose.
-bool Localizer::Impl::hold_by_scan(const View& view, const std::vector<int>& local_landmarks) {
-  if (broken || !finder.has_grid() || view.scan.size() < kEnoughPoints) return false;
-  const double time_s = view.frame.time_s;
-  const Se3 pose = believed(time_s);
-  if (view.shows_plenty() && map_knows_view(pose)) return false;
-  const GridMatch match = match_scan(finder.field(), view.scan, to_planar(pose),
-                                     motion.dead_reckoning().pose_covariance());
-  const Se3 held = from_planar(match.look.map_from_base);
-  const ViewCheck seen = check(view, local_landmarks, held, kPlenty);
-  if (seen.contradicts || seen.scan_share < kHeldScanShare) return false;
-  motion.correct(match.look);
-  tracked.clear();
-  note_agreement(time_s, 0, seen);
-  return true;
-}
-
-void Localizer::Impl::take_in(const View& view, const TrackResult& result, const ViewCheck& seen) {
-  motion.correct(view.frame.time_s, result.solution);
-  tracked.clear();
-  for (const FeatureMatch& m : result.matches) tracked.push_back(m.landmark);
-  note_agreement(view.frame.time_s, telling(result.matches), seen);
-}
-
-void Localizer::Impl::note_agreement(double time_s, int inliers, const ViewCheck& seen) {
-  if (time_s - last_fix_s > kReconfirmAfterS && state == State::kTracking) {
-    state = State::kConfirming;
-    evidence.agreeing_frames = 0;
-  }
-  ++evidence.agreeing_frames;
-  evidence.inliers = inliers;
-  evidence.depth_share = seen.depth_share;
-  evidence.matched_share = seen.matched_share;
-  last_fix_s = time_s;
-  misses = 0;
-  broken = doubt = false;
-  contradicted_since_s.reset();
-}
-
-void Localizer::Impl::miss(const View& view, const std::vector<int>& local_landmarks,
-                           const MotionPrediction& prediction) {
-  const double time_s = view.frame.time_s;
-  const Se3& pose = prediction.prior.map_from_base;
-  motion.miss(time_s);
-  tracked.clear();
-  ++misses;
-  doubt = view.shows_plenty();
-  // In an unbroken view nobody has carried the rover: the map is old, or never saw this side.
-  const bool contradicted =
-      (broken || !was_sure) && doubt &&
-      (map_knows_view(pose) || check(view, local_landmarks, pose, kPlenty).contradicts);
-  if (contradicted && !contradicted_since_s) contradicted_since_s = time_s;
-  const bool carried_off = contradicted_since_s && misses >= kLostAfterMisses &&
-                           time_s - *contradicted_since_s >= kLostAfterS;
-  if (carried_off || motion.carried() ||
-      prediction.sigma_position_m > config.localizer.lost_sigma_m) {
-    lose();
-  }
-}
-
-/// Enough frames agree, and the whole map has no better place for what they show.
-bool Localizer::Impl::is_convincing() const {
-  if (evidence.agreeing_frames < config.localizer.confirmation_frames) return false;
-  // Blind for a moment only, or told where to look: that speaks for the place, too.
-  if (was_sure || prior) {
-    return evidence.scan_share >= kStillScanShare && evidence.rival_share <= kMostRival &&
-           evidence.shape_margin >= kWorseThanRival;
-  }
-  if (!finder.has_grid()) {
-    return evidence.depth_share >= kSureDepthShare && evidence.inliers >= kSureTelling &&
-           evidence.recognitions >= kSureRecognition && evidence.rival_share <= kMostRival;
-  }
-  return evidence.scan_points >= kSureScanPoints && evidence.scan_share >= kSureScanShare &&
-         evidence.rival_share <= kMostRival && confidence_of(evidence) >= kOkConfidence;
-}
-
 void Localizer::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan) {
+  const CameraFrame frame = camera_frame_from(scan, map.camera());
+  FeatureSet features;
+  if (!frame.gray.empty()) {
+    features = extract_features(
+        frame, map.camera(), config.features, config.depth,
+        rolling_shutter_of(rig, config.tracking, motion.predict(frame.time_s).turn_rate_rad_s,
+                           map.base_from_camera()));
+  }
+  on_frame(frame, std::move(features));
+}
+
+void Localizer::Impl::on_frame(const CameraFrame& frame, FeatureSet features) {
   ++frames;
-  View view;
-  view.frame = camera_frame_from(scan, map.camera());
-  note_interval(view.frame.time_s);
-  if (view.frame.gray.empty()) return;
-  view.features = extract_features(
-      view.frame, map.camera(), config.features, config.depth,
-      rolling_shutter_of(rig, config.tracking, motion.predict(view.frame.time_s).turn_rate_rad_s,
-                         map.base_from_camera()));
-  if (finder.has_grid() && !view.frame.depth.empty()) {
-    view.scan = obstacle_points(view.frame.depth, view.frame.depth_unit_m, map.camera(),
+  note_interval(frame.time_s);
+  if (frame.gray.empty()) return;
+  SeenView view{frame, std::move(features), {}};
+  if (finder.has_grid() && !frame.depth.empty()) {
+    view.scan = obstacle_points(frame.depth, frame.depth_unit_m, map.camera(),
                                 map.base_from_camera(), config);
   }
   finder.fade();
@@ -432,8 +140,30 @@ PoseEstimate Localizer::Impl::estimate(double time_s) {
 
 Localizer::Localizer(const SlamConfig& config, const Rig& rig, const maps::SavedMap& map,
                      const std::optional<PosePrior>& prior)
-    : impl_(std::make_unique<Impl>(config, rig, map, prior)) {}
+    : restored_(std::make_unique<LandmarkMap>(restore_landmark_map(map, config))) {
+  DepthMemory depths(restored_->camera(), restored_->base_from_camera());
+  for (const auto& k : map.keyframes) depths.add(from_mrpt(k.map_from_base), k.depth_png);
+  impl_ = std::make_unique<Impl>(config, rig, *restored_, map.grid, std::move(depths),
+                                 MotionModel(config, rig));
+  if (prior) impl_->expect_near(*prior);
+}
+
+Localizer::Localizer(const SlamConfig& config, const Rig& rig, const LandmarkMap& map,
+                     const maps::OccupancyGrid& grid, const MotionModel& motion) {
+  DepthMemory depths(map.camera(), map.base_from_camera());
+  for (const Keyframe& k : map.keyframes()) {
+    if (!k.culled()) depths.add(k.map_from_base, k.depth_png);
+  }
+  impl_ = std::make_unique<Impl>(config, rig, map, grid, std::move(depths), motion);
+}
+
 Localizer::~Localizer() = default;
+
+PoseEstimate Localizer::process(const CameraFrame& frame, FeatureSet features) {
+  impl_->begin(frame.time_s);
+  impl_->on_frame(frame, std::move(features));
+  return impl_->estimate(frame.time_s);
+}
 
 PoseEstimate Localizer::process(const mrpt::obs::CObservation& observation) {
   Impl& l = *impl_;

@@ -14,6 +14,11 @@
 
 namespace rovigo::slam {
 
+struct CameraFrame;
+class FeatureSet;
+class LandmarkMap;
+class MotionModel;
+
 /// Where somebody says the rover is (RViz's pose estimate); wide enough to be true.
 struct PosePrior {
   TPose2D map_from_base;
@@ -29,16 +34,23 @@ class Localizer {
  public:
   Localizer(const SlamConfig& config, const Rig& rig, const maps::SavedMap& map,
             const std::optional<PosePrior>& prior);
+  /// In a map that is being made: it must outlive this, and stay as it is meanwhile.
+  /// `motion` knows how wheels and gyro are calibrated.
+  Localizer(const SlamConfig& config, const Rig& rig, const LandmarkMap& map,
+            const maps::OccupancyGrid& grid, const MotionModel& motion);
   ~Localizer();
 
   /// The pose after this observation: corrected by a camera frame, carried on by wheels and gyro.
   PoseEstimate process(const mrpt::obs::CObservation& observation);
+  /// The same for a camera frame whose features are known already.
+  PoseEstimate process(const CameraFrame& frame, FeatureSet features);
 
   /// What the last estimate's confidence was computed from; nothing while no place is believed.
   std::optional<LocalizerEvidence> evidence() const;
 
  private:
   struct Impl;
+  std::unique_ptr<LandmarkMap> restored_;  ///< of a saved map
   std::unique_ptr<Impl> impl_;
 };
 

@@ -19,6 +19,7 @@ MotionStep part_of(const MotionStep& step, double begin_s, double end_s) {
   part.end_s = end_s;
   part.distance_m *= share;
   part.turn_rad *= share;
+  part.turn_rate_change_rad_s *= share;
   return part;
 }
 
@@ -70,9 +71,10 @@ void MotionLinks::integrate(const MotionStep& step) {
   }
   const MotionCalibration& c = open_.calibration;
   const double distance = step.distance_m * (1.0 + c(1));
-  const double turn = step.standing   ? 0.0
-                      : step.has_gyro ? step.turn_rad - c(0) * dt
-                                      : step.turn_rad * (1.0 + c(2));
+  const double turn = step.standing ? 0.0
+                      : step.has_gyro
+                          ? step.turn_rad - c(0) * dt + c(3) * step.turn_rate_change_rad_s
+                          : step.turn_rad * (1.0 + c(2));
   TPose2D& pose = open_.from_from_to;
   const double mid = pose.phi + 0.5 * turn;
   const double cos = std::cos(mid), sin = std::sin(mid);
@@ -84,8 +86,12 @@ void MotionLinks::integrate(const MotionStep& step) {
   open_.by_calibration = f * open_.by_calibration;
   open_.by_calibration(0, 1) += step.distance_m * cos;
   open_.by_calibration(1, 1) += step.distance_m * sin;
-  if (!step.standing)
-    open_.by_calibration(2, step.has_gyro ? 0 : 2) += step.has_gyro ? -dt : step.turn_rad;
+  if (!step.standing && step.has_gyro) {
+    open_.by_calibration(2, 0) -= dt;
+    open_.by_calibration(2, 3) += step.turn_rate_change_rad_s;
+  } else if (!step.standing) {
+    open_.by_calibration(2, 2) += step.turn_rad;
+  }
 
   const StepNoise noise = noise_of(step, config_);
   open_.covariance = f * open_.covariance * f.transpose();

@@ -14,8 +14,9 @@ namespace rovigo::slam {
 /// What wheels and gyro said between two readings of the wheels, uncalibrated.
 struct MotionStep {
   double begin_s = 0.0, end_s = 0.0;
-  double distance_m = 0.0;  ///< of the wheel that grips
-  double turn_rad = 0.0;    ///< of the gyro, or of the wheels where there is no gyro
+  double distance_m = 0.0;              ///< of the wheel that grips
+  double turn_rad = 0.0;                ///< of the gyro, or of the wheels where there is no gyro
+  double turn_rate_change_rad_s = 0.0;  ///< of the gyro, from begin to end
   bool has_gyro = false;
   bool slipping = false;
   bool standing = false;
@@ -27,16 +28,18 @@ struct StepNoise {
 };
 StepNoise noise_of(const MotionStep& step, const DeadReckoningConfig& config);
 
-/// Gyro bias (rad/s), error of the wheels' speed scale, of their turn scale (shares).
-using MotionCalibration = Eigen::Vector3d;
+/// Gyro bias (rad/s), error of the wheels' speed scale, of their turn scale (shares), how late the
+/// gyro tells of a turn (s).
+using MotionCalibration = Eigen::Vector4d;
+using ByCalibration = Eigen::Matrix<double, 3, 4>;
 
 struct MotionLink {
   int from = -1, to = -1;  ///< keyframes
   double begin_s = 0.0, end_s = 0.0;
   TPose2D from_from_to;  ///< under `calibration`
   MotionCalibration calibration = MotionCalibration::Zero();
-  Eigen::Matrix3d by_calibration = Eigen::Matrix3d::Zero();  ///< of (x, y, yaw), first order
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();      ///< with the calibration known
+  ByCalibration by_calibration = ByCalibration::Zero();  ///< of (x, y, yaw), first order
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< with the calibration known
 
   /// The same motion under another calibration.
   TPose2D under(const MotionCalibration& other) const;

@@ -18,6 +18,7 @@ constexpr double kLeastFit = 0.55, kBelowBest = 0.2;  // shares of the points
 constexpr std::size_t kMostPlaces = 6, kMostCandidates = 16;
 // A fortieth of the shape weighs as much as one clear view: views repeat, walls less so.
 constexpr double kShapeWeight = 40.0, kMostRecognitions = 4.0;
+constexpr double kRefutationWeight = 3.0;
 constexpr double kRefuted = 0.06;  // of the shape: so much worse than another place
 // Of a place found cell by cell, and of the odometry since.
 constexpr double kPlaceSigmaM = 0.08, kPlaceSigmaRad = 0.04;
@@ -28,7 +29,8 @@ bool is_same(const Se3& a, const Se3& b) {
 }
 
 double weight_of(const PlaceCandidate& c) {
-  return kShapeWeight * c.shape() + std::min(c.recognitions, kMostRecognitions);
+  return kShapeWeight * c.shape() + std::min(c.recognitions, kMostRecognitions) -
+         kRefutationWeight * c.refutations;
 }
 
 /// Evenly taken, so that a search costs the same in large rooms and small ones.
@@ -41,12 +43,11 @@ std::vector<TPoint2D> some_of(const std::vector<ScanPoint>& points) {
 
 }  // namespace
 
-PlaceFinder::PlaceFinder(const maps::SavedMap& map, const CameraModel& camera,
-                         const Se3& base_from_camera, bool by_shape) {
-  if (!by_shape || map.grid.cells.empty()) return;
-  field_.emplace(map.grid);
-  scan_search_.emplace(map.grid);
-  depths_.emplace(map, camera, base_from_camera);
+PlaceFinder::PlaceFinder(const maps::OccupancyGrid& grid, DepthMemory depths)
+    : depths_(std::move(depths)) {
+  if (grid.cells.empty()) return;
+  field_.emplace(grid);
+  scan_search_.emplace(grid);
 }
 
 bool PlaceFinder::see(double time_s, const Se3& odom_from_base, const std::vector<ScanPoint>& scan,
@@ -54,7 +55,7 @@ bool PlaceFinder::see(double time_s, const Se3& odom_from_base, const std::vecto
   if (!field_) return false;
   const bool is_new = local_scan_.add(time_s, to_planar(odom_from_base), scan);
   if (is_new) {
-    views_.push_back({odom_from_base, depths_->view_of(depth, depth_unit_m)});
+    views_.push_back({odom_from_base, depths_.view_of(depth, depth_unit_m)});
     if (views_.size() > kMostViews) views_.pop_front();
   }
   points_ = local_scan_.points(to_planar(odom_from_base));
@@ -71,8 +72,17 @@ void PlaceFinder::recognize(const Se3& map_from_base, const Se3& odom_from_base,
   refine(candidates_.back(), odom_from_base);
 }
 
+void PlaceFinder::refute(const Se3& map_from_base, const Se3& odom_from_base) {
+  for (PlaceCandidate& c : candidates_) {
+    if (!is_same(c.map_from_odom * odom_from_base, map_from_base)) continue;
+    c.recognitions = 0.0;
+    c.refutations += 1.0;
+  }
+}
+
 void PlaceFinder::fade() {
   for (PlaceCandidate& c : candidates_) {
+    c.refutations *= kKeptShare;
     c.recognitions *= kKeptShare;
     if (c.recognitions < kForgottenWeight) c.recognitions = 0.0;
   }
@@ -125,7 +135,7 @@ void PlaceFinder::refine(PlaceCandidate& candidate, const Se3& odom_from_base) c
 double PlaceFinder::surface_share(const Se3& map_from_odom) const {
   DepthAgreement sum;
   for (const View& v : views_) {
-    const DepthAgreement a = depths_->agreement(v.depth, map_from_odom * v.odom_from_base);
+    const DepthAgreement a = depths_.agreement(v.depth, map_from_odom * v.odom_from_base);
     sum.at_depth += a.at_depth;
     sum.seen_through += a.seen_through;
     sum.hidden += a.hidden;
@@ -195,7 +205,7 @@ void PlaceFinder::clear() {
   views_.clear();
   points_.clear();
   candidates_.clear();
-  knows_all_rivals_ = true;
+  knows_all_rivals_ = false;
 }
 
 }  // namespace rovigo::slam

@@ -17,6 +17,7 @@ namespace rovigo::slam {
 struct PlaceCandidate {
   Se3 map_from_odom;
   double recognitions = 0.0;  ///< weights of the views recognised there, older ones fading
+  double refutations = 0.0;   ///< how often following it ended in contradiction, fading likewise
   double scan_share = 0.0;    ///< of the local scan, how much fits the grid there
   double surface_share = kUnjudgedShare;  ///< of what keyframes saw there, how much views show
 
@@ -39,9 +40,8 @@ struct PlaceSupport {
 
 class PlaceFinder {
  public:
-  /// `by_shape` false (a camera whose height is not known) leaves appearance alone to judge.
-  PlaceFinder(const maps::SavedMap& map, const CameraModel& camera, const Se3& base_from_camera,
-              bool by_shape);
+  /// An empty grid (a camera whose height is not known) leaves appearance alone to judge.
+  PlaceFinder(const maps::OccupancyGrid& grid, DepthMemory depths);
 
   /// A frame's depth image, and its scan in base_link; true if it showed enough new to judge again.
   bool see(double time_s, const Se3& odom_from_base, const std::vector<ScanPoint>& scan,
@@ -49,7 +49,9 @@ class PlaceFinder {
 
   /// A view recognised: `weight` 1 for a clear one.
   void recognize(const Se3& map_from_base, const Se3& odom_from_base, double weight);
-  /// Older recognitions count less: once a frame.
+  /// Following this place has led to what the map does not show.
+  void refute(const Se3& map_from_base, const Se3& odom_from_base);
+  /// Older recognitions and refutations count less: once a frame.
   void fade();
 
   /// Searches the whole grid for places that the local scan fits (inside `region`, if given), and
@@ -81,12 +83,12 @@ class PlaceFinder {
 
   std::optional<SignedDistanceField> field_;
   std::optional<ScanSearch> scan_search_;
-  std::optional<DepthMemory> depths_;
+  DepthMemory depths_;
   std::deque<View> views_;  ///< the newest of the local scan's
   LocalScan local_scan_;
   std::vector<ScanPoint> points_;  ///< of the local scan, in base_link of the newest frame
   std::vector<PlaceCandidate> candidates_;
-  bool knows_all_rivals_ = true;  ///< the last search came to its end
+  bool knows_all_rivals_ = false;  ///< a search has been made, and the last one came to its end
 };
 
 }  // namespace rovigo::slam

@@ -3,7 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slam/localizer_evidence.h"
+
 namespace rovigo::slam {
+
+namespace {
+
+// Of the confidence where nothing is seen: somebody may have carried the rover.
+constexpr double kBlindShare = 0.9;
+
+}  // namespace
 
 PoseEstimate report_pose(const Se3& map_from_base, double time_s, const MotionPrediction& now,
                          const Eigen::Matrix3d& map_covariance, TrackingState state,
@@ -16,12 +25,14 @@ PoseEstimate report_pose(const Se3& map_from_base, double time_s, const MotionPr
   e.sigma_position_m = std::sqrt(std::max(0.0, covariance(0, 0) + covariance(1, 1)));
   e.sigma_heading_rad = std::sqrt(std::max(0.0, covariance(2, 2)));
   if (state == TrackingState::kLost) return e;
+  e.confidence = chance_within_limits(now.sigma_position_m, now.sigma_heading_rad);
   if (state == TrackingState::kTracking && frame_age_s < kFrameIsLateS) {
     e.health = Health::kOk;
-    e.confidence = 0.95;
   } else if (now.sigma_position_m < config.lost_sigma_m) {
     e.health = Health::kDegraded;
-    e.confidence = 0.6;
+    e.confidence *= kBlindShare;
+  } else {
+    e.confidence = 0.0;
   }
   return e;
 }

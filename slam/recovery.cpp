@@ -10,12 +10,63 @@ namespace {
 constexpr int kSearchEverywhereEvery = 5;  // frames without a match
 constexpr int kSearchWhenLostEvery = 2;
 constexpr double kSurprisingM = 0.15;
-constexpr double kWorthlessSigmaM = 0.5;  // dead reckoning beyond it holds nobody back from a jump
+constexpr double kWorthlessSigmaM = 0.5;  // dead reckoning beyond it is no better than none
 
 }  // namespace
 
-Relocalization Recovery::recognise(const LocalMap& local, const FeatureSet& features,
-                                   std::uint64_t seed) const {
+void Recovery::add(const mrpt::obs::CObservation& reading) {
+  if (search_) guess_ = search_->process(reading);
+}
+
+void Recovery::recover(const CameraFrame& frame, const FeatureSet& features, std::uint64_t seed,
+                       LocalMap& local, TrackResult& result) {
+  ++misses_;
+  if (must_search()) {
+    search(frame, features, local, result);
+  } else {
+    recognise(frame.time_s, features, seed, local, result);
+  }
+}
+
+void Recovery::search(const CameraFrame& frame, const FeatureSet& features, LocalMap& local,
+                      TrackResult& result) {
+  if (!search_) search_.emplace(config_, rig_, map_, surroundings_.grid_so_far(map_), motion_);
+  const PoseEstimate found = search_->process(frame, features);
+  guess_ = found;
+  if (found.health != Health::kOk) return;
+  const Se3 believed = motion_.predict(frame.time_s).prior.map_from_base;
+  const Se3 seen = from_mrpt(found.map_from_base);
+  local = select_local_map(map_, {}, seen);
+  move_to(frame.time_s, seen, believed, local.reference_keyframe);
+  health_.found_for_sure();
+  result = track_frame(map_, local.landmarks, features, motion_.predict(frame.time_s));
+  misses_ = 0;
+}
+
+void Recovery::recognise(double time_s, const FeatureSet& features, std::uint64_t seed,
+                         const LocalMap& local, TrackResult& result) {
+  const Relocalization found = recognise_anywhere(local, features, seed);
+  if (!found.match.accepted) return;
+  const MotionPrediction believed = motion_.predict(time_s);
+  const Se3& seen = found.match.solution.map_from_base;
+  const double apart = (believed.prior.map_from_base.translation - seen.translation).norm();
+  if (apart > kSurprisingM + 4.0 * believed.sigma_position_m) {
+    if (motion_.planar()) {
+      // A look-alike, unless the prediction is worth nothing: then the whole map is asked.
+      if (believed.sigma_position_m > kWorthlessSigmaM) health_.give_up();
+      return;
+    }
+    move_to(time_s, seen, believed.prior.map_from_base, found.keyframe);
+    health_.found_elsewhere();
+  }
+  result.status = TrackStatus::kTracked;
+  result.solution = found.match.solution;
+  result.matches = found.match.matches;
+  misses_ = 0;
+}
+
+Relocalization Recovery::recognise_anywhere(const LocalMap& local, const FeatureSet& features,
+                                            std::uint64_t seed) const {
   const bool on_floor = motion_.planar();
   Relocalization found;
   found.match = match_place(map_, local.landmarks, local.landmarks, features, on_floor,
@@ -29,33 +80,12 @@ Relocalization Recovery::recognise(const LocalMap& local, const FeatureSet& feat
                            {.min_inliers = config_.localizer.relocalization_inliers, .seed = seed});
 }
 
-void Recovery::recover(double time_s, const LocalMap& local, const FeatureSet& features,
-                       std::uint64_t seed, TrackResult& result) {
-  ++misses_;
-  const Relocalization found = recognise(local, features, seed);
-  if (!found.match.accepted) return;
-  const MotionPrediction believed = motion_.predict(time_s);
-  const Se3& seen = found.match.solution.map_from_base;
-  const double apart = (believed.prior.map_from_base.translation - seen.translation).norm();
-  if (apart > kSurprisingM + 4.0 * believed.sigma_position_m) {
-    // A look-alike, unless something has shown that the prediction is worth nothing.
-    const bool trusted = motion_.planar() && health_.state() != TrackingState::kLost;
-    if (trusted && believed.sigma_position_m < kWorthlessSigmaM) return;
-    move_to(time_s, seen, believed.prior.map_from_base, found.keyframe);
-  }
-  result.status = TrackStatus::kTracked;
-  result.solution = found.match.solution;
-  result.matches = found.match.matches;
-  misses_ = 0;
-}
-
 void Recovery::move_to(double time_s, const Se3& seen, const Se3& believed, int keyframe) {
   const bool doubted = health_.state() != TrackingState::kTracking;
   const double since_s = jump_ ? jump_->since_s : doubted ? health_.doubted_since_s() : time_s;
   jump_ = Jump{since_s, time_s, keyframe, seen * believed.inverse()};
   motion_.place(time_s, seen, kFoundSigmaM, kFoundSigmaRad);
   motion_.cut_link();
-  health_.found_elsewhere();
 }
 
 void Recovery::sharpen(const Se3& seen_from_predicted) {
@@ -63,7 +93,10 @@ void Recovery::sharpen(const Se3& seen_from_predicted) {
 }
 
 void Recovery::mend(TrajectoryHistory& history) {
-  if (!jump_ || health_.state() != TrackingState::kTracking) return;
+  if (health_.state() != TrackingState::kTracking) return;
+  search_.reset();  // the map is about to change
+  guess_.reset();
+  if (!jump_) return;
   history.reanchor(jump_->since_s, jump_->until_s, map_, jump_->keyframe,
                    jump_->new_map_from_old_map);
   jump_.reset();

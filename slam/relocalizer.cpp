@@ -34,6 +34,12 @@ bool may_show(const PoseRegion& region, const Se3& keyframe) {
 
 }  // namespace
 
+Relocalizer::Relocalizer(const LandmarkMap& map) {
+  for (const Keyframe& k : map.keyframes()) {
+    if (!k.culled()) add(map, k.id);
+  }
+}
+
 void Relocalizer::add(const LandmarkMap& map, int keyframe) {
   const Keyframe& k = map.keyframe(keyframe);
   std::vector<Descriptor> descriptors;

@@ -24,6 +24,10 @@ struct Relocalization {
 
 class Relocalizer {
  public:
+  Relocalizer() = default;
+  /// Knows every keyframe of the map.
+  explicit Relocalizer(const LandmarkMap& map);
+
   /// Adds a keyframe's descriptors (those with landmarks) to the index.
   void add(const LandmarkMap& map, int keyframe);
   /// A keyframe that was culled is not proposed any more.

@@ -46,14 +46,14 @@ struct Slam::Impl {
         motion(settings, r),
         continuity(camera, base_from_camera),
         back_end(settings, map, motion.planar()),
-        recovery(settings, map, back_end.relocalizer(), motion, health),
-        wall_ties(settings),
-        surroundings(settings, camera, base_from_camera, motion.planar()) {}
+        surroundings(settings, camera, base_from_camera, motion.planar()),
+        recovery(settings, r, map, surroundings, back_end.relocalizer(), motion, health),
+        wall_ties(settings) {}
 
   void begin(double time_s);
   void dead_reckon(double time_s);
   PoseEstimate on_frame(const mrpt::obs::CObservation3DRangeScan& scan);
-  TrackResult track(double time_s, const FeatureSet& features);
+  TrackResult track(const CameraFrame& frame, const FeatureSet& features);
   Se3 believe(const CameraFrame& frame, const TrackResult& result);
   Se3 follow_walls(const CameraFrame& frame, const Se3& pose);
   void judge(const CameraFrame& frame, bool tracked, const Se3& pose);
@@ -74,9 +74,9 @@ struct Slam::Impl {
   TrackingHealth health;
   ViewContinuity continuity;
   BackEnd back_end;
+  Surroundings surroundings;
   Recovery recovery;
   WallTies wall_ties;
-  Surroundings surroundings;
   TrajectoryHistory history;
   LocalMap local;
   std::vector<int> tracked_landmarks;
@@ -104,7 +104,7 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
                            base_from_camera));
   }
 
-  const TrackResult result = track(frame.time_s, features);
+  const TrackResult result = track(frame, features);
   const bool tracked = result.status == TrackStatus::kTracked;
   Se3 pose = believe(frame, result);
   judge(frame, tracked, pose);
@@ -125,15 +125,18 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
 }
 
 /// The frame against the landmarks around the prediction; against the whole map where that fails.
-TrackResult Slam::Impl::track(double time_s, const FeatureSet& features) {
-  const MotionPrediction prediction = motion.predict(time_s);
+TrackResult Slam::Impl::track(const CameraFrame& frame, const FeatureSet& features) {
+  const MotionPrediction prediction = motion.predict(frame.time_s);
   if (map.keyframes().empty()) return {};
   local = select_local_map(map, tracked_landmarks, prediction.prior.map_from_base);
-  TrackResult result = track_frame(map, local.landmarks, features, prediction);
+  TrackResult result;
+  if (!recovery.must_search()) {
+    result = track_frame(map, local.landmarks, features, prediction);
+  }
   if (result.status == TrackStatus::kTracked) {
     recovery.not_needed();
   } else {
-    recovery.recover(time_s, local, features, static_cast<std::uint64_t>(counters.camera_frames),
+    recovery.recover(frame, features, static_cast<std::uint64_t>(counters.camera_frames), local,
                      result);
   }
   return result;
@@ -240,6 +243,7 @@ void Slam::Impl::remember_pose(double time_s, const Se3& pose, bool is_camera_fr
 }
 
 PoseEstimate Slam::Impl::report(double time_s, const Se3& pose) {
+  if (const auto guess = recovery.guess(); guess && guess->time_s >= time_s) return *guess;
   return report_pose(pose, time_s, motion.predict(time_s), uncertainty.at(pose), health.state(),
                      time_s - last_frame_s, config.localizer);
 }
@@ -260,6 +264,7 @@ std::optional<PoseEstimate> Slam::process(const mrpt::obs::CObservation& observa
                  dynamic_cast<const mrpt::obs::CObservationOdometry*>(&observation)) {
     s.motion.add(*wheels);
   }
+  s.recovery.add(observation);
   s.dead_reckon(time_s);
   const bool late = s.last_frame_s > 0.0 && time_s - s.last_frame_s >= kFrameIsLateS;
   if (!late || !s.motion.planar()) return std::nullopt;

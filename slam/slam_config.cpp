@@ -56,6 +56,16 @@ void DeadReckoningConfig::describe(maps::SettingsVisitor& v) {
           .min = 0.0,
           .max = 0.1},
          gyro_bias_walk_rad_s2);
+  v.real({.name = "gyro_delay_s",
+          .help = "How late the gyro tells of a turn, as far as known before anything is seen.",
+          .min = -0.1,
+          .max = 0.1},
+         gyro_delay_s);
+  v.real({.name = "gyro_delay_sigma_s",
+          .help = "How wrong gyro_delay_s may be; the delay is learned while driving.",
+          .min = 0.0,
+          .max = 0.1},
+         gyro_delay_sigma_s);
   v.real({.name = "wheel_speed_scale_sigma",
           .help = "How wrong the nominal wheel radius may be, as a share.",
           .min = 0.0,

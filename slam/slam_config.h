@@ -28,6 +28,8 @@ struct DeadReckoningConfig {
   double gyro_sigma_rad_s = 0.004;        ///< of one sample
   double gyro_bias_sigma_rad_s = 0.02;    ///< before anything is known
   double gyro_bias_walk_rad_s2 = 1.0e-4;  ///< per square root of a second
+  double gyro_delay_s = 0.005;            ///< a sample is the mean of some time before its stamp
+  double gyro_delay_sigma_s = 0.005;      ///< filters and clocks differ; looks at the world show it
   double wheel_speed_scale_sigma = 0.05;  ///< nominal wheel radius may be off by this share
   double wheel_turn_scale_sigma = 0.08;   ///< nominal track may be off by this share
   double wheel_speed_sigma_m_s = 0.02;    ///< of one wheel-speed reading

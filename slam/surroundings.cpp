@@ -145,6 +145,10 @@ void Surroundings::add_keyframes(const LandmarkMap& map) {
 maps::OccupancyGrid Surroundings::render(const LandmarkMap& map) {
   if (!on_floor_) add_keyframes(map);
   cast_votes_until(std::numeric_limits<double>::infinity(), map);
+  return grid_so_far(map);
+}
+
+maps::OccupancyGrid Surroundings::grid_so_far(const LandmarkMap& map) const {
   std::vector<PlacedPatch> placed;
   for (const AnchoredPatch& p : patches_) {
     placed.push_back(

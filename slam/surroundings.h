@@ -32,6 +32,9 @@ class Surroundings {
 
   /// The grid, from the poses as the keyframes are now.
   maps::OccupancyGrid render(const LandmarkMap& map);
+  /// The same halfway: without the newest looks, of which nobody knows yet what in them moves.
+  /// Empty off the floor.
+  maps::OccupancyGrid grid_so_far(const LandmarkMap& map) const;
 
   /// The floor as the camera has seen it so far, against what the mount says.
   const FloorPlane& floor() const { return floor_.plane(); }

@@ -53,4 +53,9 @@ void TrackingHealth::found_elsewhere() {
   confirmations_ = 0;
 }
 
+void TrackingHealth::found_for_sure() {
+  state_ = TrackingState::kConfirming;
+  confirmations_ = kConfirmingFrames - 1;
+}
+
 }  // namespace rovigo::slam

@@ -33,8 +33,12 @@ class TrackingHealth {
   TrackingState state() const { return state_; }
   /// Takes in one frame; `tracked` means against the map around the believed pose.
   void update(const FrameEvidence& frame);
-  /// The place was recognised far from the believed pose.
+  /// The place was recognised far from the believed pose: some frames have to agree.
   void found_elsewhere();
+  /// Several views have shown already that it is this place: one more is enough.
+  void found_for_sure();
+  /// Dead reckoning has become worthless.
+  void give_up() { state_ = TrackingState::kLost; }
 
   /// Dead reckoning may be built upon: nothing speaks against it.
   bool is_trusted() const {

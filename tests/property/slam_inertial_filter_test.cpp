@@ -47,6 +47,7 @@ class RandomDrive {
     sensors_.gyro_bias = 0.01 * Eigen::Vector3d(gaussian(), gaussian(), gaussian());
     sensors_.accelerometer_bias = 0.06 * Eigen::Vector3d(gaussian(), gaussian(), gaussian());
     sensors_.gyro_walk_rad_s2 = 1e-4;
+    sensors_.gyro_delay_s = std::clamp(0.005 + 0.005 * gaussian(), 0.0, 0.02);
     sensors_.tick_m = 4.5e-4;
     sensors_.wheel_sigma_m = DeadReckoningConfig{}.wheel_speed_sigma_m_s * std::sqrt(0.02);
     filter_.place({kLookSigmaM * gaussian(), kLookSigmaM * gaussian(), kLookSigmaRad * gaussian()},

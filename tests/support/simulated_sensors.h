@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <deque>
 #include <random>
 
 #include "maps/geometry.h"
@@ -16,6 +17,7 @@ struct SensorFaults {
   double turn_scale = 1.0;
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();
   double gyro_walk_rad_s2 = 0.0;
+  double gyro_delay_s = 0.005;  ///< 0 .. 0.1; a sample is the mean of some time before its stamp
   Eigen::Vector3d accelerometer_bias = Eigen::Vector3d::Zero();
   bool gyro = true, accelerometer = true, wheels = true;
   double gyro_sigma_rad_s = 0.003, accelerometer_sigma_m_s2 = 0.02;
@@ -44,6 +46,8 @@ class SimulatedSensors : public SensorFaults {
     const double change = (new_speed - speed_m_s) / kDt;
     speed_m_s = new_speed;
     turn_rad_s = new_turn;
+    turns_.push_front(new_turn);
+    if (turns_.size() > 12) turns_.pop_back();
     time_s += kDt;
     truth = maps::compose(truth, {speed * kDt * std::cos(0.5 * turn * kDt),
                                   speed * kDt * std::sin(0.5 * turn * kDt), turn * kDt});
@@ -51,7 +55,7 @@ class SimulatedSensors : public SensorFaults {
     gyro_bias.z() += gyro_walk_rad_s2 * std::sqrt(kDt) * gaussian();
     if (gyro) {
       filter.add_gyro(time_s,
-                      Eigen::Vector3d(0, 0, new_turn) + gyro_bias + shake(gyro_sigma_rad_s));
+                      Eigen::Vector3d(0, 0, turned_before()) + gyro_bias + shake(gyro_sigma_rad_s));
     }
     if (accelerometer) {
       filter.add_accelerometer(time_s, Eigen::Vector3d(change, speed * turn, 9.81) +
@@ -80,6 +84,13 @@ class SimulatedSensors : public SensorFaults {
  private:
   static constexpr double kHalfTrackM = 0.179;
 
+  /// The turn rate of one delay ago.
+  double turned_before() const {
+    const double steps = std::min(gyro_delay_s * 100, static_cast<double>(turns_.size()) - 1);
+    const auto whole = static_cast<std::size_t>(steps);
+    const double part = steps - static_cast<double>(whole);
+    return part > 0 ? (1 - part) * turns_[whole] + part * turns_[whole + 1] : turns_[whole];
+  }
   void roll_wheels(double speed, double turn, double dt) {
     const bool rolls = speed != 0.0 || turn != 0.0;
     const double rough = rolls ? wheel_sigma_m * std::sqrt(dt) * gaussian() : 0.0;
@@ -104,6 +115,7 @@ class SimulatedSensors : public SensorFaults {
 
   double left_m_ = 0.0, right_m_ = 0.0, left_read_ = 0.0, right_read_ = 0.0;
   int steps_ = 0;
+  std::deque<double> turns_;  ///< newest first
 };
 
 /// A look at the truth, as good as `sigma`s say.

@@ -81,7 +81,9 @@ void dump(const std::vector<Run>& runs, const std::filesystem::path& file) {
   std::ofstream out(file);
   for (const Run& run : runs) {
     for (const Answer& a : run.answers) {
-      if (!a.is_frame || !a.evidence) continue;
+      // A frame in doubt counts for less than its evidence says: that share is not fitted here.
+      const bool in_doubt = a.evidence && a.confidence < slam::confidence_of(*a.evidence) - 1e-9;
+      if (!a.is_frame || !a.evidence || in_doubt) continue;
       out << a.right() << ','
           << slam::chance_within_limits(a.evidence->sigma_position_m,
                                         a.evidence->sigma_heading_rad);

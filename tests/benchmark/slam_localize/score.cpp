@@ -63,13 +63,15 @@ int Run::confidently_wrong_poses() const {
 }
 
 int Run::confidently_wrong_poses_but_until_the_frame_after(double from_s) const {
+  // In the order of arrival: readings of the frame's own time may come before it.
   const auto frame = std::find_if(answers.begin(), answers.end(), [&](const Answer& a) {
     return a.is_frame && a.time_s >= from_s;
   });
-  const double until_s = frame == answers.end() ? from_s : frame->time_s;
-  return static_cast<int>(std::count_if(answers.begin(), answers.end(), [&](const Answer& a) {
-    return a.confidently_wrong() && (a.time_s < from_s || a.time_s >= until_s);
-  }));
+  int wrong = 0;
+  for (auto a = answers.begin(); a != answers.end(); ++a) {
+    wrong += a->confidently_wrong() && (a->time_s < from_s || a >= frame);
+  }
+  return wrong;
 }
 
 Run localize(const MappedWorld& world, const app::RovigoConfig& config,

@@ -60,6 +60,37 @@ TEST(InertialFilter, LooksTeachTheTurnScaleWithoutAGyro) {
   EXPECT_NEAR(filter.state().turn_scale, -0.05, 0.01);
 }
 
+TEST(InertialFilter, LooksTeachHowLateTheGyroTells) {
+  for (const double delay_s : {0.0, 0.014}) {
+    InertialFilter filter = started();
+    SimulatedSensors drive({.gyro_delay_s = delay_s});
+    for (int i = 0; i < 60; ++i) {
+      drive.run(filter, 0.2, 0.2, i % 10 < 5 ? 1.2 : -1.2);
+      filter.correct(look_at(drive.truth, 0.005, 0.003), 0.0, 0.0);
+    }
+    EXPECT_NEAR(filter.state().gyro_delay_s, delay_s, 0.001);
+    drive.run(filter, 1.0, 0.0, 0.0);
+    filter.place(drive.truth, 0.0, 0.0);
+    drive.run(filter, 0.5, 0.0, 1.5);  // without a look
+    EXPECT_LT(drive.heading_error(filter), 0.003) << "of a turn told " << delay_s << " s late";
+  }
+}
+
+TEST(InertialFilter, AGyroOfUnknownDelayLeavesTurnsUncertain) {
+  const auto sigma_in_turn = [](double delay_sigma_s) {
+    DeadReckoningConfig config;
+    config.gyro_delay_sigma_s = delay_sigma_s;
+    InertialFilter filter{config};
+    filter.place({0, 0, 0}, 0.0, 0.0);
+    SimulatedSensors drive;
+    drive.run(filter, 2.0, 0.0, 0.0);
+    drive.run(filter, 0.5, 0.0, 1.5);
+    return std::sqrt(filter.pose_covariance()(2, 2));
+  };
+  EXPECT_GT(sigma_in_turn(0.01), 0.012);  // 1.5 rad/s for 10 ms
+  EXPECT_LT(sigma_in_turn(0.0), 0.004);
+}
+
 TEST(InertialFilter, ASlippingWheelIsNoticedAndTheOtherFollowed) {
   InertialFilter filter = started();
   SimulatedSensors drive;

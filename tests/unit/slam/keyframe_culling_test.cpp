@@ -129,7 +129,7 @@ MotionLink link(int from, int to, double begin_s, const TPose2D& motion) {
   l.begin_s = begin_s;
   l.end_s = begin_s + 1.0;
   l.from_from_to = motion;
-  l.by_calibration << 0, motion.x, 0, 0, motion.y, 0, -1, 0, 0;
+  l.by_calibration << 0, motion.x, 0, 0, 0, motion.y, 0, 0, -1, 0, 0, 0.3;
   l.covariance.diagonal() << 1e-4, 2e-4, 1e-5;
   return l;
 }
@@ -151,7 +151,7 @@ TEST(KeyframeCulling, TwoLinksThatMetInTheKeyframeBecomeOne) {
 
 TEST(KeyframeCulling, AChainedLinkFollowsTheCalibrationAsItsPartsDo) {
   const MotionLink a = link(0, 1, 0.0, {0.3, 0.0, 0.5}), b = link(1, 2, 1.0, {0.2, 0.1, 0.1});
-  const MotionCalibration other(1e-4, 1e-3, 0.0);
+  const MotionCalibration other(1e-4, 1e-3, 0.0, 2e-3);
   const TPose2D parts = maps::compose(a.under(other), b.under(other));
   const TPose2D whole = chained(a, b).under(other);
   EXPECT_NEAR(whole.x, parts.x, 1e-6);

@@ -42,12 +42,23 @@ TEST(MotionLink, AnArcEndsWhereGeometryPutsIt) {
 
 TEST(MotionLink, AnotherCalibrationIsFollowedToFirstOrder) {
   const auto steps = arc(5.0, 2.0, 0.4, 0.5);
-  const MotionCalibration other(0.002, 0.02, 0.0);
+  const MotionCalibration other(0.002, 0.02, 0.0, 0.0);
   const TPose2D predicted = link_over(steps, MotionCalibration::Zero()).under(other);
   const TPose2D exact = link_over(steps, other).from_from_to;
   EXPECT_NEAR(predicted.x, exact.x, 2e-4);
   EXPECT_NEAR(predicted.y, exact.y, 2e-4);
   EXPECT_NEAR(predicted.phi, exact.phi, 1e-9);
+}
+
+TEST(MotionLink, AGyroThatTellsLateOwesTheTurnsBegin) {
+  std::vector<MotionStep> steps = arc(5.0, 1.0, 0.0, 0.0);
+  for (std::size_t i = 25; i < steps.size(); ++i) steps[i].turn_rad = 1.2 * kStepS;
+  steps[25].turn_rate_change_rad_s = 1.2;
+  const MotionCalibration late(0.0, 0.0, 0.0, 0.01);
+  const MotionLink link = link_over(steps, late);
+  EXPECT_NEAR(link.from_from_to.phi, 0.6 + 0.012, 1e-9);
+  EXPECT_NEAR(link_over(steps, MotionCalibration::Zero()).under(late).phi, link.from_from_to.phi,
+              1e-9);
 }
 
 TEST(MotionLink, AKeyframeBetweenTwoReadingsSplitsTheStep) {

@@ -28,19 +28,25 @@ maps::SavedMap map_of(const DepthRoom& room) {
   return map;
 }
 
+DepthMemory depths_of(const maps::SavedMap& map) {
+  DepthMemory depths(DepthRoom::camera(), DepthRoom::base_from_camera());
+  for (const auto& k : map.keyframes) depths.add(from_mrpt(k.map_from_base), k.depth_png);
+  return depths;
+}
+
 /// A rover that knows only its own motion since it was put down at `start`.
 struct Rover {
   Rover(const DepthRoom& r, const maps::SavedMap& map, const TPose2D& at)
-      : room(r), start(at), finder(map, DepthRoom::camera(), DepthRoom::base_from_camera(), true) {}
+      : room(r), start(at), finder(map.grid, depths_of(map)) {}
 
-  void turns_to(double turned_rad) {
+  void turns_to(double turned_rad, bool searches = true) {
     odom = {0.0, 0.0, maps::wrap_angle(turned_rad)};
     truth = maps::compose(start, odom);
     const cv::Mat depth = room.depth(truth);
     SlamConfig config;
     const auto scan =
         obstacle_points(depth, 0.001, DepthRoom::camera(), DepthRoom::base_from_camera(), config);
-    if (finder.see(time_s += 0.2, from_planar(odom), scan, depth, 0.001)) {
+    if (finder.see(time_s += 0.2, from_planar(odom), scan, depth, 0.001) && searches) {
       finder.search(from_planar(odom), std::nullopt);
     }
   }
@@ -100,6 +106,31 @@ TEST(PlaceFinder, ALookAlikeIsOutvotedByTheShapeOfWhatStandsAround) {
   EXPECT_EQ(support.rival_recognitions, 0.0) << "refuted: no rival any more";
 }
 
+// A rover that has just turned from a blank wall: enough points to judge a place by, none searched.
+TEST(PlaceFinder, BeforeTheGridWasSearchedNoPlaceIsUnrivalled) {
+  const DepthRoom room = test::odd_room();
+  Rover rover(room, map_of(room), {1.0, 1.2, 2.0});
+  for (double turned = 0.0; turned < 3.0; turned += 0.2) rover.turns_to(turned, false);
+  const Se3 here = from_planar(rover.truth), odom = from_planar(rover.odom);
+  rover.finder.recognize(here, odom, 1.0);
+  const PlaceSupport before = rover.finder.support(here, odom);
+  EXPECT_GT(before.shape, 0.8);
+  EXPECT_LE(before.shape - before.rival_shape, 0.0);
+  rover.finder.search(odom, std::nullopt);
+  const PlaceSupport after = rover.finder.support(here, odom);
+  EXPECT_GT(after.shape - after.rival_shape, 0.0);
+}
+
+TEST(PlaceFinder, APlaceThatLedToContradictionGivesWayToAnother) {
+  PlaceFinder finder(maps::OccupancyGrid{}, depths_of({}));
+  const Se3 here = from_planar({1, 2, 3}), there = from_planar({4, 2, 0});
+  finder.recognize(here, Se3{}, 1.0);
+  finder.recognize(there, Se3{}, 0.4);
+  finder.refute(here, Se3{});
+  ASSERT_TRUE(finder.best());
+  EXPECT_NEAR(finder.best()->map_from_odom.translation.x(), 4.0, 1e-9);
+}
+
 TEST(PlaceFinder, RecognitionsFadeAndAreForgotten) {
   const DepthRoom room = test::odd_room();
   Rover rover(room, map_of(room), {1.0, 1.2, 2.0});
@@ -112,7 +143,7 @@ TEST(PlaceFinder, RecognitionsFadeAndAreForgotten) {
 }
 
 TEST(PlaceFinder, WithoutAGridAppearanceAloneDecides) {
-  PlaceFinder finder(maps::SavedMap{}, DepthRoom::camera(), DepthRoom::base_from_camera(), true);
+  PlaceFinder finder(maps::OccupancyGrid{}, depths_of({}));
   EXPECT_FALSE(finder.has_grid());
   const Se3 here = from_planar({1, 2, 3}), there = from_planar({4, 2, 0});
   finder.recognize(here, Se3{}, 1.0);

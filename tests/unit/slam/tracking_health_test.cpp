@@ -133,5 +133,29 @@ TEST(TrackingHealth, APlaceThatTheNextFrameDoesNotConfirmIsGivenUp) {
   EXPECT_EQ(rover.state(), TrackingState::kLost);
 }
 
+TEST(TrackingHealth, APlaceFoundByOneViewMustBeConfirmedByFour) {
+  Rover rover;
+  rover.health.give_up();
+  rover.health.found_elsewhere();
+  rover.sees(3, true);
+  EXPECT_EQ(rover.state(), TrackingState::kConfirming);
+  EXPECT_FALSE(rover.health.is_trusted());
+  rover.sees(1, true);
+  EXPECT_EQ(rover.state(), TrackingState::kTracking);
+}
+
+TEST(TrackingHealth, APlaceFoundBySeveralViewsNeedsOneMore) {
+  Rover rover;
+  rover.health.give_up();
+  rover.health.found_for_sure();
+  EXPECT_FALSE(rover.health.is_trusted());
+  rover.sees(1, true);
+  EXPECT_EQ(rover.state(), TrackingState::kTracking);
+  rover.health.give_up();
+  rover.health.found_for_sure();
+  rover.sees(1, false, ViewVerdict::kSilent);
+  EXPECT_EQ(rover.state(), TrackingState::kLost);
+}
+
 }  // namespace
 }  // namespace rovigo::slam

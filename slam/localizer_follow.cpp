@@ -1,0 +1,96 @@
+// Following a place from frame to frame: the view against the map around the pose believed.
+
+#include "slam/localizer_impl.h"
+
+namespace rovigo::slam {
+
+namespace {
+
+constexpr double kLostAfterS = 0.3;       // of contradiction, after the view has jumped,
+constexpr int kLostAfterMisses = 3;       // and so many frames
+constexpr double kReconfirmAfterS = 0.5;  // blind for longer, the rover may be anywhere
+constexpr double kHeldScanShare = 0.75;   // of one view, to hold a pose by it alone
+constexpr std::size_t kEnoughScan = 40;   // points of it
+
+}  // namespace
+
+void Localizer::Impl::follow(const SeenView& view) {
+  const MotionPrediction prediction = motion.predict(view.frame.time_s);
+  const LocalMap local = select_local_map(map, tracked, prediction.prior.map_from_base);
+  const TrackResult result = track_frame(map, local.landmarks, view.features, prediction);
+  if (result.status == TrackStatus::kTracked) {
+    const PoseSolution& solution = result.solution;
+    const ViewCheck seen =
+        checker.check(view, local.landmarks, solution.map_from_base, solution.inliers);
+    if (!seen.contradicts) {
+      take_in(view, result, seen);
+      return;
+    }
+  }
+  if (!hold_by_scan(view, local.landmarks)) miss(view, local.landmarks, prediction);
+}
+
+/// Where the map knows no features, or not from this side, its walls still hold the pose.
+bool Localizer::Impl::hold_by_scan(const SeenView& view, const std::vector<int>& local_landmarks) {
+  if (broken || !finder.has_grid() || view.scan.size() < kEnoughScan) return false;
+  const double time_s = view.frame.time_s;
+  const Se3 pose = believed(time_s);
+  if (view.shows_plenty() && checker.map_knows_view(pose)) return false;
+  const GridMatch match = match_scan(finder.field(), view.scan, to_planar(pose),
+                                     motion.dead_reckoning().pose_covariance());
+  const Se3 held = from_planar(match.look.map_from_base);
+  const ViewCheck seen = checker.check(view, local_landmarks, held, SeenView::kPlenty);
+  if (seen.contradicts || seen.scan_share < kHeldScanShare) return false;
+  motion.correct(match.look);
+  tracked.clear();
+  note_agreement(time_s, 0, seen);
+  return true;
+}
+
+void Localizer::Impl::take_in(const SeenView& view, const TrackResult& result,
+                              const ViewCheck& seen) {
+  motion.correct(view.frame.time_s, result.solution);
+  tracked.clear();
+  for (const FeatureMatch& m : result.matches) tracked.push_back(m.landmark);
+  note_agreement(view.frame.time_s, checker.telling(result.matches), seen);
+}
+
+void Localizer::Impl::note_agreement(double time_s, int inliers, const ViewCheck& seen) {
+  if (time_s - last_fix_s > kReconfirmAfterS && state == State::kTracking) {
+    state = State::kConfirming;
+    evidence.agreeing_frames = 0;
+  }
+  ++evidence.agreeing_frames;
+  evidence.inliers = inliers;
+  evidence.depth_share = seen.depth_share;
+  evidence.matched_share = seen.matched_share;
+  last_fix_s = time_s;
+  misses = 0;
+  broken = doubt = false;
+  contradicted_since_s.reset();
+}
+
+void Localizer::Impl::miss(const SeenView& view, const std::vector<int>& local_landmarks,
+                           const MotionPrediction& prediction) {
+  const double time_s = view.frame.time_s;
+  const Se3& pose = prediction.prior.map_from_base;
+  motion.miss(time_s);
+  tracked.clear();
+  ++misses;
+  doubt = view.shows_plenty();
+  // In an unbroken view nobody has carried the rover: the map is old, or never saw this side.
+  const bool contradicted =
+      (broken || !was_sure) && doubt &&
+      (checker.map_knows_view(pose) ||
+       checker.check(view, local_landmarks, pose, SeenView::kPlenty).contradicts);
+  if (contradicted && !contradicted_since_s) contradicted_since_s = time_s;
+  const bool carried_off = contradicted_since_s && misses >= kLostAfterMisses &&
+                           time_s - *contradicted_since_s >= kLostAfterS;
+  if (motion.carried() || prediction.sigma_position_m > config.localizer.lost_sigma_m) {
+    lose();
+  } else if (carried_off) {
+    was_sure ? lose() : drop_guess(time_s);
+  }
+}
+
+}  // namespace rovigo::slam
