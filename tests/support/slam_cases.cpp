@@ -113,7 +113,7 @@ std::vector<SlamCase> make_cases() {
   // An hour through the same rooms, two frames a second. "Flat": a tenth of the memory allowed.
   cases.push_back({"one_hour",
                    {},
-                   {{"lab", "loop:60:1:19", "default", 81, 2.0}},
+                   {{"lab", "loop:60:1:20", "default", 81, 2.0}},
                    rover_checks({at_most(&S::ate_m, 0.025),
                                  {&S::memory_growth_mb, Sense::kAtMost, 30.0, std::nullopt, false},
                                  {&S::cpu_growth, Sense::kAtMost, 1.1, std::nullopt, false}})});
