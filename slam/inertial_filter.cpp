@@ -109,9 +109,11 @@ void InertialFilter::propagate(double dt) {
                   .turn_rad = state_.rate.z() * dt,
                   .has_gyro = gyro_rate_.has_value(),
                   .slipping = false,
+                  .unseen_speed_m_s = 0.0,
                   .standing = standing_};
   const StepNoise rolling = noise_of(step, config_);
   step.slipping = slipping();
+  step.unseen_speed_m_s = slip_.unseen_speed_m_s();
   const double slip_m2 = noise_of(step, config_).along_m2 - rolling.along_m2;
   state_.propagate(dt, {.turning_rad_s2 = kTurningRadS2,
                         .jerk_m_s3 = kJerkMS3,
@@ -236,6 +238,7 @@ MotionStep InertialFilter::step_of(const WheelStep& wheels, double gripped_m, do
           .turn_rate_change_rad_s = known ? gyro_rate_->z() - *step_rate_rad_s_ : 0.0,
           .has_gyro = gyro_rate_.has_value(),
           .slipping = slipping(),
+          .unseen_speed_m_s = slip_.unseen_speed_m_s(),
           .standing = standing_};
 }
 

@@ -45,9 +45,10 @@ double WheelSlip::distance_gripped(const WheelStep& wheels, const SlipWitnesses&
                                    InertialState& state) {
   judge_one_side(wheels, witnesses, state);
   double distance = wheels.distance_m;
+  const double excess = std::abs(disagreement_rad_s_) * 0.5 * kTrackM * wheels.dt;
+  unseen_speed_m_s_ = std::max(0.0, excess - std::abs(distance)) / wheels.dt;
   if (one_slips_) {
     // One wheel spins faster than the ground passes: follow the other one.
-    const double excess = std::abs(disagreement_rad_s_) * 0.5 * kTrackM * wheels.dt;
     distance = std::copysign(std::max(0.0, std::abs(distance) - excess), distance);
   }
   return judge_both_sides(wheels, distance, witnesses, state);

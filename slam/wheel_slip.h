@@ -35,6 +35,9 @@ class WheelSlip {
   double distance_gripped(const WheelStep& wheels, const SlipWitnesses& witnesses,
                           InertialState& state);
 
+  /// In a turn in place either wheel may be the one that slips: so fast the body may move unseen,
+  /// forwards or backwards.
+  double unseen_speed_m_s() const { return unseen_speed_m_s_; }
   bool one_side() const { return one_slips_; }
   bool both_sides() const { return both_slip_; }
 
@@ -46,7 +49,8 @@ class WheelSlip {
 
   DeadReckoningConfig config_;
   double disagreement_rad_s_ = 0.0;  ///< wheels minus gyro, smoothed
-  double felt_speed_m_s_ = 0.0;      ///< by the accelerometer, drawn to the wheels' slowly
+  double unseen_speed_m_s_ = 0.0;
+  double felt_speed_m_s_ = 0.0;  ///< by the accelerometer, drawn to the wheels' slowly
   bool one_slips_ = false, both_slip_ = false;
 };
 
