@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <limits>
 
+#include "planning/step_scale.h"
+
 namespace rovigo::planning {
 
 namespace {
@@ -23,7 +25,7 @@ struct GridSearch::Query {
   std::uint32_t goal = 0;
   int goal_x = 0;  // in padded columns and rows
   int goal_y = 0;
-  Scale scale{};
+  StepScale scale{};
   double heuristic_weight = 1.0;
   std::array<std::uint32_t, 256> half_straight{};  // half the cost of a step, by soft cost
   std::array<std::uint32_t, 256> half_diagonal{};
@@ -31,15 +33,8 @@ struct GridSearch::Query {
   std::size_t expanded = 0;
   bool overflow = false;
 
-  std::uint32_t octile(int dx, int dy) const {
-    const auto ax = static_cast<std::uint32_t>(std::abs(dx));
-    const auto ay = static_cast<std::uint32_t>(std::abs(dy));
-    const std::uint32_t lo = std::min(ax, ay);
-    const std::uint32_t hi = std::max(ax, ay);
-    return (hi - lo) * scale.straight + lo * scale.diagonal;
-  }
   std::uint32_t heuristic(int x, int y) const {
-    const std::uint32_t h = octile(x - goal_x, y - goal_y);
+    const std::uint32_t h = scale.octile(x - goal_x, y - goal_y);
     if (heuristic_weight == 1.0) return h;
     return static_cast<std::uint32_t>(std::min(h * heuristic_weight, kHeuristicLimit));
   }
@@ -71,12 +66,9 @@ GridSearchResult GridSearch::find(const SearchGrid& grid, maps::Cell start, maps
   GridSearchResult result;
   if (!grid.is_passable(start) || !grid.is_passable(goal)) return result;
   const bool soft = grid.costs() != nullptr && weights.soft_cost > 0.0;
-  // Convergents of sqrt 2, the first off by 2e-9 of a diagonal step; even multiples of them for
-  // soft costs, so that halves are whole. Coarser ones serve where 32 bits would overflow.
-  constexpr std::array<Scale, 6> kScales{
-      {{13860, 19601}, {11482, 16238}, {1970, 2786}, {338, 478}, {58, 82}, {10, 14}}};
-  for (std::size_t attempt = soft ? 1 : 0; attempt < kScales.size(); ++attempt) {
-    const Scale& scale = kScales[attempt];
+  // Soft costs are made of halves of steps, which the first scale does not have.
+  for (std::size_t attempt = soft ? 1 : 0; attempt < kStepScales.size(); ++attempt) {
+    const StepScale& scale = kStepScales[attempt];
     Query query;
     query.grid = &grid;
     query.start = grid.index_of(start);
@@ -131,8 +123,8 @@ bool GridSearch::run(Query& query) {
   const std::uint32_t cost_limit =
       kUnreached - query.step_limit -
       static_cast<std::uint32_t>(std::min(
-          kHeuristicLimit,
-          query.heuristic_weight * query.octile(grid.geometry().width, grid.geometry().height)));
+          kHeuristicLimit, query.heuristic_weight *
+                               query.scale.octile(grid.geometry().width, grid.geometry().height)));
   cost_to_come[query.start] = 0;
   touched_.push_back(query.start);
   if (query.start == query.goal) return true;

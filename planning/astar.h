@@ -47,10 +47,6 @@ class GridSearch {
     std::uint32_t cell;
     std::uint32_t cost;
   };
-  struct Scale {
-    std::uint32_t straight;
-    std::uint32_t diagonal;
-  };
   struct Query;
 
   void prepare(const SearchGrid& grid);
