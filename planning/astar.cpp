@@ -146,10 +146,12 @@ bool GridSearch::run(Query& query) {
       query.overflow = true;
       return false;
     }
-    ++query.expanded;
     const int row = static_cast<int>(entry.cell) / stride;
     const int x = static_cast<int>(entry.cell) - row * stride - 1;
     const int y = row - 1;
+    // On open ground the goal shares its bucket with all cells of equally short ways.
+    if (best != kUnreached && entry.cost + query.heuristic(x, y) >= best) continue;
+    ++query.expanded;
     const std::uint8_t here = soft ? costs[entry.cell] : std::uint8_t{0};
     for (unsigned open_moves = moves[entry.cell]; open_moves != 0; open_moves &= open_moves - 1) {
       const auto move = static_cast<std::size_t>(std::countr_zero(open_moves));

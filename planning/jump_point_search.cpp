@@ -34,7 +34,8 @@ struct JumpPointSearch::Query {
 };
 
 JumpPointSearch::JumpPointSearch(const SearchGrid& grid)
-    : geometry_(grid.geometry()),
+    : grid_(grid),
+      geometry_(grid.geometry()),
       rows_(geometry_.width, geometry_.height),
       columns_(geometry_.height, geometry_.width) {
   if (geometry_.size() > kCellMask) {
@@ -51,6 +52,8 @@ JumpPointSearch::JumpPointSearch(const SearchGrid& grid)
       columns_.open(y, x);
     }
   }
+  rows_.find_stops();
+  columns_.find_stops();
 }
 
 std::size_t JumpPointSearch::memory_bytes() const {
@@ -158,8 +161,9 @@ void JumpPointSearch::go_diagonal(Query& query, maps::Cell from, std::size_t mov
   const Move& m = kMoves[move];
   std::uint32_t cost = cost_to_come_[query.from];
   maps::Cell at = from;
-  while (is_open(at.x + m.dx, at.y) && is_open(at.x, at.y + m.dy) &&
-         is_open(at.x + m.dx, at.y + m.dy)) {
+  const std::uint8_t* moves = grid_.moves() + grid_.index_of(from);
+  const int step = m.dy * grid_.stride() + m.dx;
+  for (; (*moves >> move & 1U) != 0; moves += step) {
     at = {at.x + m.dx, at.y + m.dy};
     cost += query.scale.diagonal;
     if (at == query.goal) {

@@ -16,6 +16,7 @@ namespace rovigo::planning {
 /// soft costs and single closed moves of the grid are not looked at.
 class JumpPointSearch {
  public:
+  /// `grid` must outlive this.
   explicit JumpPointSearch(const SearchGrid& grid);
 
   /// The shortest way, as GridSearch::find gives it without soft costs. `expanded_cells` counts
@@ -55,6 +56,7 @@ class JumpPointSearch {
   }
   bool is_open(int x, int y) const { return rows_.is_open(x, y); }
 
+  const SearchGrid& grid_;
   maps::GridGeometry geometry_;
   BitRows rows_, columns_;
   std::vector<std::uint32_t> cost_to_come_;  ///< kUnreached except where a query has been

@@ -95,7 +95,8 @@ TEST(JumpPointSearch, RefusesWhatIsOutsideOrClosed) {
   g.width = g.height = 3;
   maps::Costmap map(g);
   map.at({1, 1}) = maps::Costmap::kLethal;
-  JumpPointSearch search{SearchGrid(map, 8)};
+  const SearchGrid grid(map, 8);
+  JumpPointSearch search(grid);
   EXPECT_FALSE(search.find({0, 0}, {1, 1}).found);
   EXPECT_FALSE(search.find({1, 1}, {0, 0}).found);
   EXPECT_FALSE(search.find({-1, 0}, {0, 0}).found);

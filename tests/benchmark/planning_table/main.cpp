@@ -42,18 +42,18 @@ struct Method {
   std::vector<double> times_ms = {};
 };
 
-/// All methods take turns query by query, so that the machine's moods hit all alike.
+/// The methods take turns, round by round, so that the machine's moods hit all alike.
 void race(std::vector<Method>& methods, const std::vector<CellPair>& queries) {
+  std::vector<double> lengths(queries.size());
   for (int round = 0; round < kRounds; ++round) {
-    for (const CellPair& q : queries) {
-      double first = 0.0;
-      for (Method& m : methods) {
+    for (Method& m : methods) {
+      for (std::size_t i = 0; i < queries.size(); ++i) {
         const double begin = cpu_ms();
-        const double length = m.answer(q);
+        const double length = m.answer(queries[i]);
         m.times_ms.push_back(cpu_ms() - begin);
-        if (&m == &methods.front()) first = length;
-        if (m.asked_ratio > 0.0 && std::abs(length - first) > 1e-3 * first + 1e-3) {
-          std::printf("  %s disagrees: %.4f, not %.4f cells\n", m.name.c_str(), length, first);
+        if (&m == &methods.front()) lengths[i] = length;
+        if (m.asked_ratio > 0.0 && std::abs(length - lengths[i]) > 1e-3 * length) {
+          std::printf("  %s disagrees: %.4f, not %.4f cells\n", m.name.c_str(), length, lengths[i]);
         }
       }
     }
