@@ -200,7 +200,8 @@ TEST(SearchesOnClosedMoves, GoRoundThemAsDijkstraDoes) {
       const Cell start = random_cell();
       const auto found = search.find(grid, start, goal, {});
       ASSERT_EQ(found.found, std::isfinite(to_go.cost_m(start)));
-      if (found.found) ASSERT_NEAR(found.cost_m, to_go.cost_m(start), 1e-9);
+      if (!found.found) continue;
+      ASSERT_NEAR(found.cost_m, to_go.cost_m(start), 1e-9);
       for (std::size_t c = 1; c < found.cells.size(); ++c) {
         const Cell a = found.cells[c - 1], b = found.cells[c];
         bool open = false;
@@ -250,9 +251,10 @@ TEST(LineOfSight, SeesWhatAFineWalkAlongTheLineSees) {
         if (!map.is_passable(a) || !map.is_passable(b)) continue;
         const bool want = line_is_free(map, a, b);
         ++(want ? free : blocked);
-        // A walk in steps may miss a corner that is barely cut, never see one that is not there.
-        if (line_of_sight(grid, a, b)) ASSERT_TRUE(want);
-        if (k % 2 != 0) ASSERT_EQ(line_of_sight(grid, a, b), want);
+        // A walk in steps may miss a corner barely cut by a long line; short ones it sees whole.
+        const bool got = line_of_sight(grid, a, b);
+        ASSERT_TRUE(want || !got);
+        ASSERT_TRUE(got || !want || k % 2 == 0);
         ASSERT_EQ(line_of_sight(grid, a, b), line_of_sight(grid, b, a));
       }
     }
