@@ -8,6 +8,8 @@ const char* to_string(PlannerKind kind) {
   switch (kind) {
     case PlannerKind::kAStar:
       return "astar";
+    case PlannerKind::kThetaStar:
+      return "thetastar";
     case PlannerKind::kRrtConnect:
       return "rrtconnect";
     case PlannerKind::kRrtStar:
@@ -17,7 +19,8 @@ const char* to_string(PlannerKind kind) {
 }
 
 std::optional<PlannerKind> parse_planner_kind(const std::string& text) {
-  for (const auto kind : {PlannerKind::kAStar, PlannerKind::kRrtConnect, PlannerKind::kRrtStar}) {
+  for (const auto kind : {PlannerKind::kAStar, PlannerKind::kThetaStar, PlannerKind::kRrtConnect,
+                          PlannerKind::kRrtStar}) {
     if (text == to_string(kind)) return kind;
   }
   return std::nullopt;
@@ -127,7 +130,7 @@ void TimingConfig::describe(maps::SettingsVisitor& v) {
 void PlannerConfig::describe(maps::SettingsVisitor& v) {
   v.text({.name = "planner",
           .help = "Search method.",
-          .choices = {"astar", "rrtconnect", "rrtstar"},
+          .choices = {"astar", "thetastar", "rrtconnect", "rrtstar"},
           .advanced = false},
          planner);
   v.real({.name = "escape_max_distance_m",

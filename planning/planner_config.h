@@ -10,11 +10,12 @@ namespace rovigo::planning {
 
 enum class PlannerKind {
   kAStar,       ///< soft-cost A* on the inflated grid
+  kThetaStar,   ///< Theta*: the shortest way, straight lines in any direction, no soft costs
   kRrtConnect,  ///< OMPL RRTConnect in the plane: any path, fast
   kRrtStar,     ///< OMPL RRT* in the plane: shorter the more iterations it gets
 };
 
-/// `astar`, `rrtconnect`, `rrtstar`.
+/// `astar`, `thetastar`, `rrtconnect`, `rrtstar`.
 const char* to_string(PlannerKind kind);
 std::optional<PlannerKind> parse_planner_kind(const std::string& text);
 

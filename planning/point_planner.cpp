@@ -1,6 +1,6 @@
 // `rovigo plan --point`: a point on the raw grid, exactly.
 
-#include "planning/astar.h"
+#include "planning/jump_point_search.h"
 #include "planning/planner.h"
 #include "planning/refusal.h"
 
@@ -24,13 +24,14 @@ std::string map_extent(const maps::GridGeometry& g) {
 struct PointPlanner::Impl {
   maps::OccupancyGrid grid;
   SearchGrid search_grid;
-  GridSearch search;
+  JumpPointSearch search;
+  GridSearch flood;  ///< for what is nearest to a goal that cannot be reached
 
   Impl(const maps::OccupancyGrid& g, maps::MapMode map_mode)
-      : grid(g), search_grid(g, map_mode, 8) {}
+      : grid(g), search_grid(g, map_mode, 8), search(search_grid) {}
 
   void add_nearest(PointQueryResult& result, maps::Cell start, const TPoint2D& goal) {
-    if (const auto cell = search.nearest_reachable(search_grid, start, goal)) {
+    if (const auto cell = flood.nearest_reachable(search_grid, start, goal)) {
       result.nearest_reachable_goal = grid.geometry.center_of(*cell);
     }
     result.message += nearest_hint(result.nearest_reachable_goal);
@@ -75,7 +76,7 @@ PointQueryResult PointPlanner::query(const TPoint2D& start, const TPoint2D& goal
     impl_->add_nearest(result, from, goal);
     return result;
   }
-  GridSearchResult found = impl_->search.find(impl_->search_grid, from, to, {});
+  GridSearchResult found = impl_->search.find(from, to);
   result.expanded_cells = found.expanded_cells;
   if (!found.found) {
     refuse(PlanStatus::kNoPath, goal,

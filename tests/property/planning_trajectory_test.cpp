@@ -106,6 +106,7 @@ INSTANTIATE_TEST_SUITE_P(Styles, RandomWorlds,
                                          Style{"Coarse", 0.10, 0.25, 12, 5, 0.0},
                                          Style{"RadiusOnTheGrid", 0.10, 0.15, 12, 10, 0.0},
                                          Style{"PointRobot", 0.10, 0.0, 25, 40, 0.05},
+                                         Style{"ThetaStar", 0.05, 0.30, 8, 8, 0.0, "thetastar"},
                                          Style{"RrtConnect", 0.05, 0.30, 8, 8, 0.0, "rrtconnect"},
                                          Style{"RrtStar", 0.05, 0.30, 8, 8, 0.0, "rrtstar"}),
                          [](const auto& param) { return std::string(param.param.name); });

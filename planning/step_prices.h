@@ -1,0 +1,47 @@
+#pragma once
+// What a step of a search costs, in the integers of a StepScale.
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "maps/costmap.h"
+#include "planning/search_grid.h"
+#include "planning/step_scale.h"
+
+namespace rovigo::planning {
+
+/// A step costs its length times the mean of both cells' price, 1 + weight * soft cost / kMaxSoft.
+class StepPrices {
+ public:
+  StepPrices(const StepScale& scale, double soft_cost_weight) : scale_(scale) {
+    for (std::size_t c = 0; c < 256; ++c) {
+      const double price =
+          1.0 + soft_cost_weight * static_cast<double>(c) / maps::Costmap::kMaxSoft;
+      half_straight_[c] = static_cast<std::uint32_t>(std::lround(0.5 * scale.straight * price));
+      half_diagonal_[c] = static_cast<std::uint32_t>(std::lround(0.5 * scale.diagonal * price));
+    }
+  }
+
+  const StepScale& scale() const { return scale_; }
+  /// The cheapest step is scale().straight.
+  std::uint32_t dearest_step() const { return 2 * half_diagonal_[255] + 1; }
+
+  /// Of `move` between cells of these soft costs, which do not count unless `soft`.
+  template <bool soft>
+  std::uint32_t step(std::size_t move, std::uint8_t from, std::uint8_t to) const {
+    if constexpr (soft) {
+      const auto& half = move < kStraightMoves ? half_straight_ : half_diagonal_;
+      return half[from] + half[to];
+    } else {
+      return move < kStraightMoves ? scale_.straight : scale_.diagonal;
+    }
+  }
+
+ private:
+  StepScale scale_;
+  std::array<std::uint32_t, 256> half_straight_{};  ///< half the cost of a step, by soft cost
+  std::array<std::uint32_t, 256> half_diagonal_{};
+};
+
+}  // namespace rovigo::planning
