@@ -96,6 +96,7 @@ nlohmann::ordered_json plan_json(const TimedPlan& plan) {
     object["min_clearance_m"] = r.min_clearance_m;
     object["duration_s"] = r.trajectory.duration_s();
     object["escape"] = r.escape;
+    object["unsafe_samples"] = r.unsafe_samples;
   } else if (r.nearest_reachable_goal) {
     object["nearest_reachable_goal"] = {r.nearest_reachable_goal->x, r.nearest_reachable_goal->y};
   } else {

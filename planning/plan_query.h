@@ -45,8 +45,10 @@ class PlanQuery {
   bool search_leg(const TPoint2D& from, const TPoint2D& to, const std::string& name);
   bool sample_leg(const TPoint2D& from, const TPoint2D& to, const std::string& name, Path& leg);
   void smooth_path();
+  void reference_path();
   void time_path();
   void measure();
+  void report_cuts();
 
   void begin(PlanStage stage) const;
   bool refuse(PlanStatus status, const TPoint2D& point, std::string message);
@@ -55,6 +57,7 @@ class PlanQuery {
   std::string map_extent() const;
   std::string name_of_target(std::size_t index) const;
   std::vector<PathPiece> escape_pieces() const;
+  bool is_reference() const;
   bool is_safe(const std::vector<PathPiece>& pieces, const Trajectory& trajectory) const;
   void time_pieces(const std::vector<PathPiece>& pieces);
 

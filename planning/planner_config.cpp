@@ -64,6 +64,18 @@ void OmplConfig::describe(maps::SettingsVisitor& v) {
 }
 
 void SplineConfig::describe(maps::SettingsVisitor& v) {
+  v.text({.name = "spline_mode",
+          .help = "How the path is rounded: safe keeps clear of obstacles; reference is SciPy's "
+                  "smoothing spline through the cells, which may cut through them (the plan then "
+                  "says so).",
+          .choices = {"safe", "reference"}},
+         mode);
+  v.real({.name = "spline_smoothing_cells2",
+          .help = "Reference mode: bound on the sum of squared distances from the cells, in cells "
+                  "squared; 0 passes through all, -1 takes SciPy's default.",
+          .min = -1.0,
+          .max = 1e6},
+         smoothing_cells2);
   v.flag({.name = "smooth_path",
           .help = "Round the path with a cubic B-spline; otherwise drive straight pieces and turn "
                   "in place between them."},
@@ -117,6 +129,17 @@ void TimingConfig::describe(maps::SettingsVisitor& v) {
           .min = 0.02,
           .max = 0.5},
          escape_speed_m_s);
+  v.real({.name = "slow_within_m",
+          .help = "Nearer to an obstacle than this beyond robot_radius_m the rover is slowed; 0 "
+                  "never slows it.",
+          .min = 0.0,
+          .max = 5.0},
+         slow_within_m);
+  v.real({.name = "slow_speed_m_s",
+          .help = "Speed at robot_radius_m from an obstacle where slow_within_m is set.",
+          .min = 0.02,
+          .max = 0.8},
+         slow_speed_m_s);
   v.real({.name = "trajectory_period_s",
           .help = "Time between trajectory points.",
           .min = 0.002,

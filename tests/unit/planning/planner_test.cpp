@@ -309,6 +309,43 @@ TEST(Planner, AnEmptyMapRefusesInsteadOfCrashing) {
             PlanStatus::kStartOutsideMap);
 }
 
+TEST(Planner, AReferenceSplineSaysWhenItCutsThroughAnObstacle) {
+  const auto grid = two_rooms();
+  PlannerConfig config;
+  config.spline.mode = "reference";
+  config.spline.smoothing_cells2 = 2000.0;
+  const auto cutting = planner_for(grid, config).plan(from_to({1, 1}, {5, 1}));
+  ASSERT_EQ(cutting.status, PlanStatus::kOk);
+  CheckOptions options;
+  options.limits = limits_of(maps::RobotModel(), config.timing);
+  const auto report = check(cutting.trajectory, grid, options);
+  EXPECT_EQ(cutting.unsafe_samples > 0, report.unsafe_samples > 0);
+  EXPECT_GT(cutting.unsafe_samples, 0U) << "such a smoothing no longer cuts this corner";
+  EXPECT_THAT(cutting.message, HasSubstr("not safe to drive"));
+
+  const auto open = planner_for(grid, config).plan(from_to({1, 1}, {1, 2}));
+  ASSERT_EQ(open.status, PlanStatus::kOk);
+  EXPECT_EQ(open.unsafe_samples, 0U);
+  EXPECT_TRUE(open.message.empty()) << open.message;
+}
+
+TEST(Planner, AReferenceSplineWithoutSmoothingPassesThroughEveryCell) {
+  PlannerConfig config;
+  config.spline.mode = "reference";
+  config.spline.smoothing_cells2 = 0.0;
+  for (const TPoint2D goal : {TPoint2D{5, 1}, TPoint2D{1.02, 1}, TPoint2D{1.06, 1.04}}) {
+    const auto result = planner_for(two_rooms(), config).plan(from_to({1, 1}, goal));
+    ASSERT_EQ(result.status, PlanStatus::kOk);
+    for (const TPoint2D& cell : result.grid_path.points) {
+      double nearest = 1.0;
+      for (const auto& p : result.trajectory.points) {
+        nearest = std::min(nearest, maps::distance(maps::position_of(p.pose), cell));
+      }
+      EXPECT_LT(nearest, 0.005);
+    }
+  }
+}
+
 TEST(PlannerConfig, BadSettingsAreNamed) {
   PlannerConfig config;
   config.astar.connectivity = 5;
