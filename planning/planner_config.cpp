@@ -12,12 +12,17 @@ const char* to_string(PlannerKind kind) {
       return "rrtconnect";
     case PlannerKind::kRrtStar:
       return "rrtstar";
+    case PlannerKind::kBitStar:
+      return "bitstar";
+    case PlannerKind::kPrmStar:
+      return "prmstar";
   }
   return "astar";
 }
 
 std::optional<PlannerKind> parse_planner_kind(const std::string& text) {
-  for (const auto kind : {PlannerKind::kAStar, PlannerKind::kRrtConnect, PlannerKind::kRrtStar}) {
+  for (const auto kind : {PlannerKind::kAStar, PlannerKind::kRrtConnect, PlannerKind::kRrtStar,
+                          PlannerKind::kBitStar, PlannerKind::kPrmStar}) {
     if (text == to_string(kind)) return kind;
   }
   return std::nullopt;
@@ -54,6 +59,16 @@ void OmplConfig::describe(maps::SettingsVisitor& v) {
              .min = 1,
              .max = 10000000},
             rrtstar_iterations);
+  v.integer({.name = "bitstar_iterations",
+             .help = "Edges BIT* may look at; more give a shorter path.",
+             .min = 1,
+             .max = 10000000},
+            bitstar_iterations);
+  v.integer({.name = "prmstar_iterations",
+             .help = "Steps of PRM*, two to a sample; more give a shorter path.",
+             .min = 1,
+             .max = 1000000},
+            prmstar_iterations);
   v.real({.name = "rrt_step_m", .help = "Longest edge of the tree.", .min = 0.05, .max = 100.0},
          step_m);
   v.real({.name = "rrt_goal_bias",
@@ -150,7 +165,7 @@ void TimingConfig::describe(maps::SettingsVisitor& v) {
 void PlannerConfig::describe(maps::SettingsVisitor& v) {
   v.text({.name = "planner",
           .help = "Search method.",
-          .choices = {"astar", "rrtconnect", "rrtstar"},
+          .choices = {"astar", "rrtconnect", "rrtstar", "bitstar", "prmstar"},
           .advanced = false},
          planner);
   v.real({.name = "escape_max_distance_m",

@@ -12,9 +12,11 @@ enum class PlannerKind {
   kAStar,       ///< soft-cost A* on the inflated grid
   kRrtConnect,  ///< OMPL RRTConnect in the plane: any path, fast
   kRrtStar,     ///< OMPL RRT* in the plane: shorter the more iterations it gets
+  kBitStar,     ///< OMPL BIT* in the plane: batches of samples, best ways first
+  kPrmStar,     ///< OMPL PRM* in the plane: a roadmap, the shortest way on it
 };
 
-/// `astar`, `rrtconnect`, `rrtstar`.
+/// `astar`, `rrtconnect`, `rrtstar`, `bitstar`, `prmstar`.
 const char* to_string(PlannerKind kind);
 std::optional<PlannerKind> parse_planner_kind(const std::string& text);
 
@@ -33,6 +35,8 @@ struct AStarConfig {
 struct OmplConfig {
   int rrtconnect_iterations = 200000;
   int rrtstar_iterations = 10000;
+  int bitstar_iterations = 20000;
+  int prmstar_iterations = 3000;
   double step_m = 2.0;  ///< longest edge of the tree
   double goal_bias = 0.05;
   void describe(maps::SettingsVisitor& v);

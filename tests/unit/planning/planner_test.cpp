@@ -261,7 +261,8 @@ TEST_P(SamplingPlanners, FindASoundWayAndTheSameOneForTheSameSeed) {
   EXPECT_EQ(planner.plan(from_to({1, 1}, {6.5, 1.5})).status, PlanStatus::kNoPath);
 }
 
-INSTANTIATE_TEST_SUITE_P(Ompl, SamplingPlanners, testing::Values("rrtconnect", "rrtstar"));
+INSTANTIATE_TEST_SUITE_P(Ompl, SamplingPlanners,
+                         testing::Values("rrtconnect", "rrtstar", "bitstar", "prmstar"));
 
 TEST(Planner, ASamplingPlannerThatRunsOutOfIterationsSaysSo) {
   PlannerConfig config;
@@ -363,7 +364,8 @@ TEST(PlannerConfig, BadSettingsAreNamed) {
 }
 
 TEST(PlannerConfig, KindsHaveNamesThatParseBack) {
-  for (const auto kind : {PlannerKind::kAStar, PlannerKind::kRrtConnect, PlannerKind::kRrtStar}) {
+  for (const auto kind : {PlannerKind::kAStar, PlannerKind::kRrtConnect, PlannerKind::kRrtStar,
+                          PlannerKind::kBitStar, PlannerKind::kPrmStar}) {
     EXPECT_EQ(parse_planner_kind(to_string(kind)), kind);
   }
   EXPECT_FALSE(parse_planner_kind("theta").has_value());
