@@ -1,6 +1,5 @@
 #include "app/recording_run.h"
 
-#include <malloc.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 #include <sys/resource.h>
 
@@ -8,6 +7,7 @@
 #include <ctime>
 
 #include "app/text.h"
+#include "slam/heap.h"
 #include "slam/trajectory_file.h"
 
 namespace rovigo::app {
@@ -17,18 +17,6 @@ namespace {
 // Images come and go between what is kept: glibc's heap would grow to more than twice of what is in
 // use. Every so many observations what lies free goes back to the system.
 constexpr int kTrimEvery = 500;
-
-std::vector<slam::StampedPose> in_frame(const std::vector<maps::StoredPose>& trajectory,
-                                        const std::string& frame,
-                                        const mrpt::poses::CPose3D& base_from_camera) {
-  std::vector<slam::StampedPose> out;
-  out.reserve(trajectory.size());
-  for (const auto& p : trajectory) {
-    out.push_back(
-        {p.time_s, frame == "camera" ? p.map_from_base + base_from_camera : p.map_from_base});
-  }
-  return out;
-}
 
 }  // namespace
 
@@ -57,7 +45,7 @@ Reading read_all(slam::RecordingReader& reader, const std::string& label, const 
       reading.frame_times_s.push_back(mrpt::Clock::toDouble(observation->timestamp));
     }
     take(*observation);
-    if (++taken % kTrimEvery == 0) malloc_trim(0);
+    if (++taken % kTrimEvery == 0) slam::give_back_free_memory();
     progress.update(reader.progress());
   }
   reading.cpu_s = cpu_seconds() - cpu_before;
@@ -69,8 +57,11 @@ Reading read_all(slam::RecordingReader& reader, const std::string& label, const 
 void write_trajectory(const std::filesystem::path& file,
                       const std::vector<maps::StoredPose>& trajectory, const std::string& frame,
                       const mrpt::poses::CPose3D& base_from_camera) {
-  slam::write_tum_trajectory(file, "map_from_" + frame,
-                             in_frame(trajectory, frame, base_from_camera));
+  slam::write_tum_trajectory(
+      file, "map_from_" + frame, trajectory.size(), [&](std::size_t i) -> slam::StampedPose {
+        const maps::StoredPose& p = trajectory[i];
+        return {p.time_s, frame == "camera" ? p.map_from_base + base_from_camera : p.map_from_base};
+      });
 }
 
 double coverage(const std::vector<maps::StoredPose>& poses, double begin_s, double end_s) {

@@ -1,6 +1,7 @@
 #include "slam/back_end.h"
 
 #include "slam/bundle_adjustment.h"
+#include "slam/heap.h"
 #include "slam/keyframe_uncertainty.h"
 
 namespace rovigo::slam {
@@ -27,8 +28,10 @@ void BackEnd::adjust_everything(const std::vector<MotionLink>& links) {
   constexpr int kPasses = 2;  // the second without the sightings the first found wanting
   constexpr int kIterations = 8;
   for (int pass = 0; pass < kPasses; ++pass) {
+    give_back_free_memory();  // the adjustment is the greatest moment of all
     adjust_bundle(map_, {}, links, {.iterations = kIterations, .on_floor = on_floor_});
   }
+  give_back_free_memory();
 }
 
 }  // namespace rovigo::slam

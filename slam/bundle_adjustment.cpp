@@ -213,8 +213,9 @@ class Bundle {
       }
       if (!l.alive) continue;
       information.diagonal().array() += 1.0;  // invertible, whatever was seen
-      l.covariance = information.inverse();
-      l.covariance.diagonal().array() += kPointFloorM * kPointFloorM;
+      Eigen::Matrix3d covariance = information.inverse();
+      covariance.diagonal().array() += kPointFloorM * kPointFloorM;
+      l.covariance = covariance.cast<float>();
     }
     return rejected;
   }
@@ -236,11 +237,14 @@ class Bundle {
     std::stable_sort(candidates.begin(), candidates.end(), [&](int a, int b) {
       return map_.landmark(a).sightings.size() > map_.landmark(b).sightings.size();
     });
+    const int enough = std::min(
+        config_.landmarks_per_view,
+        std::max(config_.fewest_per_view, config_.landmarks_in_views / map_.living_keyframes()));
     std::vector<int> in_view(map_.keyframes().size(), 0), chosen;
     for (const int id : candidates) {
       const auto& sightings = map_.landmark(id).sightings;
       const bool wanted = std::any_of(sightings.begin(), sightings.end(), [&](auto& s) {
-        return in_view[static_cast<std::size_t>(s.keyframe)] < config_.landmarks_per_view;
+        return in_view[static_cast<std::size_t>(s.keyframe)] < enough;
       });
       if (!wanted) continue;
       chosen.push_back(id);

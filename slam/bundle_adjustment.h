@@ -10,9 +10,12 @@ namespace rovigo::slam {
 
 struct BundleConfig {
   int iterations = 10;
-  bool on_floor = false;          ///< keyframes keep to the plane within tracking's plane sigmas
-  std::size_t min_sightings = 2;  ///< landmarks seen less often constrain nothing
-  int landmarks_per_view = 150;   ///< enough for a pose; the best seen are taken
+  bool on_floor = false;           ///< keyframes keep to the plane within tracking's plane sigmas
+  std::size_t min_sightings = 2;   ///< landmarks seen less often constrain nothing
+  int landmarks_per_view = 150;    ///< enough for a pose; the best seen are taken
+  int landmarks_in_views = 40000;  ///< all views together: memory stays bounded on a long drive,
+                                   ///< whose views hold each other up and need fewer
+  int fewest_per_view = 60;
 };
 
 struct BundleResult {

@@ -13,6 +13,7 @@ constexpr int kOccupiedSteps = 8;  // log-odds 0.5: far surfaces, rarely seen, a
 // Where something moved, what may be its standing leg is an obstacle only after several looks.
 constexpr int kOccupiedAmidMotionSteps = 24;
 constexpr int kFreeSteps = -5;
+constexpr int kHiddenShare = 4;   // a level crossed so much less often than those around it hides
 constexpr int kMostCells = 8000;  // a side
 constexpr int kStripRows = 64;
 
@@ -139,12 +140,23 @@ std::int8_t percent(double steps) {
   return static_cast<std::int8_t>(std::lround(100.0 * p));
 }
 
+/// Crossed, but hardly ever where rays keep passing both below and above: something level is in the
+/// way, thinner than what the heights of rays far away tell.
+bool hides_a_top(const std::array<std::int32_t, kHeightBands>& sums, std::size_t band) {
+  const auto at = sums.begin() + static_cast<std::ptrdiff_t>(band);
+  if (band == 0 || at + 1 == sums.end()) return false;
+  const int below = *std::min_element(sums.begin(), at);
+  const int above = *std::min_element(at + 1, sums.end());
+  return kHiddenShare * *at > std::max(below, above);
+}
+
 std::int8_t decide(const CellSums& cell, CellBands& bands) {
   const auto& sums = cell.bands;
   const int enough = cell.doubted ? kOccupiedAmidMotionSteps : kOccupiedSteps;
   for (std::size_t b = 0; b < sums.size(); ++b) {
     if (sums[b] >= enough) bands.occupied |= static_cast<std::uint16_t>(1U << b);
-    if (sums[b] <= kFreeSteps) bands.free |= static_cast<std::uint16_t>(1U << b);
+    if (sums[b] <= kFreeSteps && !hides_a_top(sums, b))
+      bands.free |= static_cast<std::uint16_t>(1U << b);
   }
   // What is decided lies beyond map_server's thresholds (0.65 and 0.196), however little evidence
   // decided it.

@@ -17,7 +17,7 @@ struct PlacedPatch {
 
 /// A grid around everything that was seen. A cell is occupied when any of its height bands is, and
 /// free when rays crossed all of its upper half: what is open below but hidden above (under a
-/// table's top) is unknown, or occupied where it lies between the top's edges. Cells without
+/// table's top) is unknown, or occupied where it lies amid the top's edges. Cells without
 /// evidence are unknown.
 maps::OccupancyGrid render_grid(const std::vector<PlacedPatch>& patches, const GridConfig& config);
 

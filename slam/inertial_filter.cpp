@@ -1,10 +1,11 @@
 #include "slam/inertial_filter.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "slam/inertial_updates.h"
 
 namespace rovigo::slam {
 
@@ -30,31 +31,16 @@ constexpr double kAccelerometerWalk = 1e-3;  // m/s^2 per square root of a secon
 
 constexpr double kDelayWalk = 2e-5;  // s per square root of a second: clocks and filters wander
 
-constexpr double kFloorHeightSigmaM = 0.005, kFloorTiltSigmaRad = 0.01;
-constexpr double kSidewaysSigmaMS = 0.01;
-constexpr double kCountSigmaM = 3e-4, kCountSigmaRad = 1.2e-3;  // a tick of the encoders
-constexpr double kStillSigmaMS = 1e-4, kStillSigmaRadS = 1e-4, kStillSigmaMS2 = 1e-3;
-
 constexpr double kStandingSpeedMS = 1e-3, kStandingTurnRadS = 0.01, kStandingGyroRadS = 0.05;
 constexpr double kRestS = 0.25;       // no tick of the wheels for so long: standing
-constexpr double kSlipMemoryS = 0.1;  // smoothing of wheels against gyro
-constexpr double kTrackM = 0.358;     // lever of a slipping wheel; nominal is good enough
-constexpr double kFeltMemoryS = 0.5;  // the accelerometer's speed is drawn to the wheels' so fast
-constexpr double kFeltMemorySlippingS = 2.0;
-constexpr double kFeltSigmaMS2 = 0.03;  // what shaking leaves of the mean over that time
-constexpr double kMinSlipMS = 0.1;
 constexpr double kCarriedRad = 0.15;  // turned so far on standing wheels: carried
-constexpr double kMinTurnToCalibrate = 0.15;
-constexpr double kMostScaleSigmas = 4.0;
-constexpr double kLongestSlideS = 0.5;  // braking at 2 m/s^2 from 1 m/s
-
-constexpr std::array<int, 3> kInPlane = {S::kPosition, S::kPosition + 1, S::kAttitude + 2};
+constexpr double kMostCalibrationSigmas = 4.0;
 
 double squared(double x) { return x * x; }
 
 }  // namespace
 
-InertialFilter::InertialFilter(const DeadReckoningConfig& config) : config_(config) {
+InertialFilter::InertialFilter(const DeadReckoningConfig& config) : config_(config), slip_(config) {
   for (int i = 0; i < 3; ++i) {
     state_.reset_error(S::kVelocity + i, squared(kStartSigmaMS));
     state_.reset_error(S::kRate + i, squared(kStartSigmaRadS));
@@ -71,13 +57,7 @@ InertialFilter::InertialFilter(const DeadReckoningConfig& config) : config_(conf
 void InertialFilter::place(const TPose2D& map_from_base, double sigma_position_m,
                            double sigma_heading_rad) {
   carried_ = false;
-  state_.map_from_base = from_planar(map_from_base);
-  for (int i = 0; i < 2; ++i) {
-    state_.reset_error(S::kPosition + i, squared(sigma_position_m));
-    state_.reset_error(S::kAttitude + i, squared(kFloorTiltSigmaRad));
-  }
-  state_.reset_error(S::kPosition + 2, squared(kFloorHeightSigmaM));
-  state_.reset_error(S::kAttitude + 2, squared(sigma_heading_rad));
+  place_on_floor(map_from_base, sigma_position_m, sigma_heading_rad, state_);
 }
 
 MotionCalibration InertialFilter::calibration() const {
@@ -90,7 +70,7 @@ TTwist2D InertialFilter::twist() const {
 }
 
 Eigen::Matrix3d InertialFilter::pose_covariance() const {
-  return state_.covariance(kInPlane, kInPlane);
+  return state_.covariance(kPlanarError, kPlanarError);
 }
 
 std::optional<MotionStep> InertialFilter::take_step() {
@@ -129,9 +109,11 @@ void InertialFilter::propagate(double dt) {
                   .turn_rad = state_.rate.z() * dt,
                   .has_gyro = gyro_rate_.has_value(),
                   .slipping = false,
+                  .unseen_speed_m_s = 0.0,
                   .standing = standing_};
   const StepNoise rolling = noise_of(step, config_);
   step.slipping = slipping();
+  step.unseen_speed_m_s = slip_.unseen_speed_m_s();
   const double slip_m2 = noise_of(step, config_).along_m2 - rolling.along_m2;
   state_.propagate(dt, {.turning_rad_s2 = kTurningRadS2,
                         .jerk_m_s3 = kJerkMS3,
@@ -198,7 +180,7 @@ void InertialFilter::add_accelerometer(double time_s, const Eigen::Vector3d& for
     return state_.rate.cross(state_.body_velocity()) +
            kGravity * state_.map_from_base.rotation.row(2).transpose() + state_.accelerometer_bias;
   };
-  if (since > 0 && since < kGyroTimeoutS) felt_speed_m_s_ += (force - others()).x() * since;
+  if (since > 0 && since < kGyroTimeoutS) slip_.feel((force - others()).x() * since);
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d up = state_.map_from_base.rotation.row(2);
     const Eigen::Matrix3d by_attitude = kGravity * skew(up);
@@ -226,107 +208,47 @@ void InertialFilter::add_wheels(double time_s, const TPose2D& odom_from_base) {
     const TPose2D moved = maps::compose(maps::inverse(*odometry_), odom_from_base);
     const double along = moved.x * std::cos(0.5 * moved.phi) + moved.y * std::sin(0.5 * moved.phi);
     const WheelStep wheels{.dt = dt, .distance_m = along, .turn_rad = moved.phi};
-    const double gripped_m = distance_gripped(wheels);
+    const double gripped_m = slip_.distance_gripped(wheels, witnesses(), state_);
     const bool stood = standing_;
     standing_ = looks_standing(wheels);
     if (standing_) {
-      hold_still();
+      rest();
     } else {
       if (stood) leave_standing(wheels);
       measure_wheels(wheels, gripped_m);
     }
     judge_carrying(wheels);
-    step_ =
-        MotionStep{.begin_s = odometry_time_s_,
-                   .end_s = time_s,
-                   .distance_m = gripped_m,
-                   .turn_rad = gyro_rate_ ? raw_gyro_turn_rad_ : wheels.turn_rad,
-                   .turn_rate_change_rad_s = gyro_rate_ ? gyro_rate_->z() - step_rate_rad_s_ : 0.0,
-                   .has_gyro = gyro_rate_.has_value(),
-                   .slipping = slipping(),
-                   .standing = standing_};
+    step_ = step_of(wheels, gripped_m, time_s);
   } else if (!odometry_ || dt >= 2.0) {
-    forget_wheel_count();
+    forget_wheel_count(state_);
   }
-  hold_to_floor();
+  hold_to_floor(state_);
   odometry_ = odom_from_base;
   odometry_time_s_ = time_s;
   gyro_turn_rad_ = raw_gyro_turn_rad_ = 0.0;
-  step_rate_rad_s_ = gyro_rate_ ? gyro_rate_->z() : 0.0;
+  step_rate_rad_s_ = gyro_rate_ ? std::optional(gyro_rate_->z()) : std::nullopt;
 }
 
-/// What the wheels say of the way, with slip taken off.
-double InertialFilter::distance_gripped(const WheelStep& wheels) {
-  judge_one_slipping(wheels.turn_rad / wheels.dt, wheels.dt);
-  double distance = wheels.distance_m;
-  if (one_slips_) {
-    // One wheel spins faster than the ground passes: follow the other one.
-    const double excess = std::abs(disagreement_rad_s_) * 0.5 * kTrackM * wheels.dt;
-    distance = std::copysign(std::max(0.0, std::abs(distance) - excess), distance);
-  }
-  return judge_both_slipping(wheels, distance);
+MotionStep InertialFilter::step_of(const WheelStep& wheels, double gripped_m, double end_s) const {
+  const bool known = gyro_rate_ && step_rate_rad_s_;
+  return {.begin_s = odometry_time_s_,
+          .end_s = end_s,
+          .distance_m = gripped_m,
+          .turn_rad = gyro_rate_ ? raw_gyro_turn_rad_ : wheels.turn_rad,
+          .turn_rate_change_rad_s = known ? gyro_rate_->z() - *step_rate_rad_s_ : 0.0,
+          .has_gyro = gyro_rate_.has_value(),
+          .slipping = slipping(),
+          .unseen_speed_m_s = slip_.unseen_speed_m_s(),
+          .standing = standing_};
 }
 
-void InertialFilter::judge_one_slipping(double wheel_turn_rate, double dt) {
-  one_slips_ = false;
-  if (!gyro_rate_ || dt > kGyroTimeoutS) return;
-  const double apart = wheel_turn_rate * (1.0 + state_.turn_scale) - gyro_turn_rad_ / dt;
-  const double blend = 1.0 - std::exp(-dt / kSlipMemoryS);
-  disagreement_rad_s_ += blend * (apart - disagreement_rad_s_);
-  const double scale_sigma = std::sqrt(state_.covariance(S::kTurnScale, S::kTurnScale)) + 0.03;
-  const double sigma = config_.wheel_turn_sigma_rad_s + scale_sigma * std::abs(wheel_turn_rate);
-  one_slips_ = std::abs(disagreement_rad_s_) > config_.slip_gate * sigma;
-  // A slip begins before the smoothed figure shows it, and must not pass for a wrong scale.
-  const bool doubtful = one_slips_ || std::abs(apart) > 0.5 * config_.slip_gate * sigma;
-  if (!doubtful && std::abs(wheel_turn_rate) > kMinTurnToCalibrate) {
-    teach_turn_scale(wheel_turn_rate, apart);
-  }
-}
-
-/// Only the scale of the wheels learns from this: scrubbing wheels must not teach the gyro
-/// (a consider update: Schmidt 1966).
-void InertialFilter::teach_turn_scale(double wheel_turn_rate, double apart) {
-  auto& p = state_.covariance;
-  const double prior = p(S::kTurnScale, S::kTurnScale);
-  const double h = wheel_turn_rate;
-  const double variance = squared(config_.wheel_turn_sigma_rad_s + 0.05 * std::abs(h));
-  const double gain = prior * h / (h * h * prior + variance);
-  state_.turn_scale -= gain * apart;
-  p.row(S::kTurnScale) *= 1.0 - gain * h;
-  p.col(S::kTurnScale) *= 1.0 - gain * h;
-  p(S::kTurnScale, S::kTurnScale) += gain * gain * variance + 1e-8;
-}
-
-/// Both sides spin, or are blocked and slide: the gyro sees nothing of it, but the body does not
-/// feel the change of speed that the wheels report. The body's own speed is then followed.
-double InertialFilter::judge_both_slipping(const WheelStep& wheels, double gripped_m) {
+SlipWitnesses InertialFilter::witnesses() const {
   const bool felt = accelerometer_time_s_ && time_s_ - *accelerometer_time_s_ < kGyroTimeoutS;
-  const double scale = 1.0 + state_.speed_scale;
-  const double wheel_speed = gripped_m / wheels.dt * scale;
-  // A slide on blocked wheels is soon over: a body that moves for longer above them is carried.
-  if (!felt || wheels.dt > kGyroTimeoutS || resting_s_ > kLongestSlideS) {
-    both_slip_ = false;
-    felt_speed_m_s_ = wheel_speed;
-    return gripped_m;
-  }
-  const double apart = wheel_speed - felt_speed_m_s_;
-  // What the accelerometer reads wrongly forwards: its bias, and gravity through the pitch.
-  const std::array<Term, 2> forwards = {
-      {{S::kAccelerometerBias, 1.0}, {S::kAttitude + 1, -kGravity}}};
-  const double force_variance = state_.innovation_variance(forwards, squared(kFeltSigmaMS2));
-  const double sigma = config_.wheel_speed_sigma_m_s + kFeltMemoryS * std::sqrt(force_variance);
-  const bool slipped = both_slip_;
-  both_slip_ = !standing_ && !one_slips_ &&
-               std::abs(apart) > std::max(kMinSlipMS, config_.slip_gate * sigma);
-  const double memory = both_slip_ ? kFeltMemorySlippingS : kFeltMemoryS;
-  felt_speed_m_s_ += std::min(1.0, wheels.dt / memory) * apart;
-  if (!both_slip_) return gripped_m;
-  if (!slipped) {  // the wheels have misled the speed for a moment already
-    state_.add_doubt(S::kVelocity, squared(apart), kSlipMemoryS);
-    const std::array<Term, 1> speed = {{{S::kVelocity, 1.0}}};
-    state_.update(speed, felt_speed_m_s_ / scale - state_.velocity.x(), squared(sigma));
-  }
-  return felt_speed_m_s_ * wheels.dt / scale;
+  return {.gyro = gyro_rate_.has_value(),
+          .accelerometer = felt,
+          .gyro_turn_rad = gyro_turn_rad_,
+          .resting_s = resting_s_,
+          .standing = standing_};
 }
 
 /// Wheels at rest and a body that turns: it hangs in somebody's hands, or on a turntable.
@@ -342,7 +264,7 @@ bool InertialFilter::looks_standing(const WheelStep& wheels) {
   const bool no_tick = std::abs(wheels.distance_m) < kStandingSpeedMS * wheels.dt &&
                        std::abs(wheels.turn_rad) < kStandingTurnRadS * wheels.dt;
   resting_s_ = no_tick ? resting_s_ + wheels.dt : 0.0;
-  return resting_s_ > kRestS && !both_slip_ &&
+  return resting_s_ > kRestS && !slip_.both_sides() &&
          (!gyro_rate_ || std::abs(gyro_rate_->z() - state_.gyro_bias.z()) < kStandingGyroRadS);
 }
 
@@ -354,107 +276,35 @@ void InertialFilter::leave_standing(const WheelStep& wheels) {
   state_.add_doubt(S::kAcceleration, squared(kStartSigmaMS2), 0.0);
 }
 
-void InertialFilter::hold_still() {
-  felt_speed_m_s_ = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    const std::array<Term, 1> velocity = {{{S::kVelocity + i, 1.0}}};
-    const std::array<Term, 1> rate = {{{S::kRate + i, 1.0}}};
-    const std::array<Term, 1> acceleration = {{{S::kAcceleration + i, 1.0}}};
-    state_.update(velocity, -state_.velocity(i), squared(kStillSigmaMS));
-    state_.update(rate, -state_.rate(i), squared(kStillSigmaRadS));
-    state_.update(acceleration, -state_.acceleration(i), squared(kStillSigmaMS2));
-  }
-  if (gyro_rate_) make_up_gyro_delay();
-  forget_wheel_count();
-}
-
-void InertialFilter::forget_wheel_count() {
-  state_.odometer_m = state_.wheel_turn_rad = 0.0;
-  state_.reset_error(S::kOdometer, squared(kCountSigmaM));
-  state_.reset_error(S::kWheelTurn, squared(kCountSigmaRad));
-}
-
 void InertialFilter::measure_wheels(const WheelStep& wheels, double gripped_m) {
-  if (both_slip_) {
-    forget_wheel_count();
+  if (slip_.both_sides()) {
+    forget_wheel_count(state_);
   } else {
-    measure_odometer(S::kOdometer, S::kVelocity, gripped_m - state_.odometer_m, wheels.dt);
-    state_.odometer_m -= gripped_m;
-    if (!gyro_rate_) {
-      measure_odometer(S::kWheelTurn, S::kRate + 2, wheels.turn_rad - state_.wheel_turn_rad,
-                       wheels.dt);
-      state_.wheel_turn_rad -= wheels.turn_rad;
-    }
+    measure_distance(gripped_m, wheels.dt, state_);
+    if (!gyro_rate_) measure_wheel_turn(wheels.turn_rad, wheels.dt, state_);
   }
-  if (gyro_rate_) {
-    state_.wheel_turn_rad = 0.0;
-    state_.reset_error(S::kWheelTurn, squared(kCountSigmaRad));
-  }
-  for (const int i : {1, 2}) {
-    const std::array<Term, 1> sideways = {{{S::kVelocity + i, 1.0}}};
-    state_.update(sideways, -state_.velocity(i), squared(kSidewaysSigmaMS));
-  }
+  if (gyro_rate_) forget_wheel_turn(state_);
+  hold_on_track(state_);
 }
 
-/// What the wheels counted. A surprise means that the speed changed faster than expected; slip has
-/// been judged before.
-void InertialFilter::measure_odometer(int counter, int speed, double innovation, double dt) {
-  const double variance = squared(counter == S::kOdometer ? kCountSigmaM : kCountSigmaRad);
-  const std::array<Term, 1> count = {{{counter, 1.0}}};
-  if (squared(innovation) > kSurprise * state_.innovation_variance(count, variance)) {
-    state_.add_doubt(speed, squared(innovation / dt), 0.5 * dt);
-  }
-  state_.update(count, innovation, variance);
-}
-
-/// A rover stays on its floor, to within what floors and springs allow. This is one fact, not a
-/// new measurement each time: it never makes the pose surer than that.
-void InertialFilter::hold_to_floor() {
-  const auto hold = [this](int index, double off, double sigma) {
-    const double prior = state_.covariance(index, index), target = sigma * sigma;
-    if (prior <= target * (1.0 + 1e-6)) return;
-    const std::array<Term, 1> term = {{{index, 1.0}}};
-    state_.update(term, -off, prior * target / (prior - target));
-  };
-  const auto tilt = [this]() {
-    const Se3 upright = from_planar(map_from_base());
-    return so3_log(upright.rotation.transpose() * state_.map_from_base.rotation);
-  };
-  hold(S::kPosition + 2, state_.map_from_base.translation.z(), kFloorHeightSigmaM);
-  hold(S::kAttitude, tilt().x(), kFloorTiltSigmaRad);
-  hold(S::kAttitude + 1, tilt().y(), kFloorTiltSigmaRad);
+void InertialFilter::rest() {
+  slip_.feel_rest();
+  hold_still(state_);
+  if (gyro_rate_) make_up_gyro_delay();
+  forget_wheel_count(state_);
 }
 
 void InertialFilter::correct(const PlanarInformation& look, double floor_m, double floor_rad) {
-  const Eigen::Vector3d floor_variance(squared(floor_m), squared(floor_m), squared(floor_rad));
-  // (H^-1 + F)^-1 without inverting H, which may be singular.
-  const Eigen::Matrix3d shrink =
-      (Eigen::Matrix3d::Identity() + look.information * floor_variance.asDiagonal()).inverse();
-  Eigen::Matrix3d h = shrink * look.information;
-  h = 0.5 * (h + h.transpose()).eval();
-  const Eigen::Vector3d g = shrink * look.gradient;
-  const TPose2D pose = map_from_base();
-  const Eigen::Vector3d away(look.map_from_base.x - pose.x, look.map_from_base.y - pose.y,
-                             maps::wrap_angle(look.map_from_base.phi - pose.phi));
-  // Information form of the Kalman gain: valid for singular covariance and information alike.
-  auto& p = state_.covariance;
-  const Eigen::Matrix<double, S::kSize, 3> columns = p(Eigen::all, kInPlane);
-  const Eigen::Matrix<double, S::kSize, 3> gain =
-      columns * (Eigen::Matrix3d::Identity() + h * pose_covariance()).inverse();
-  const S::Vector error = gain * (h * away - g);
-  if (!error.allFinite() || !gain.allFinite()) return;
-  state_.inject(error);
+  if (!take_look(look, floor_m, floor_rad, state_)) return;
   // A jump of the pose (carried, wrongly recognised) must not leave sensors that no rover has.
-  const auto within = [](double scale, double sigma) {
-    return std::clamp(scale, -kMostScaleSigmas * sigma, kMostScaleSigmas * sigma);
+  const auto within = [](double value, double nominal, double sigma) {
+    const double most = kMostCalibrationSigmas * sigma;
+    return nominal + std::clamp(value - nominal, -most, most);
   };
-  state_.speed_scale = within(state_.speed_scale, config_.wheel_speed_scale_sigma);
-  state_.turn_scale = within(state_.turn_scale, config_.wheel_turn_scale_sigma);
-  state_.gyro_delay_s = config_.gyro_delay_s + within(state_.gyro_delay_s - config_.gyro_delay_s,
-                                                      config_.gyro_delay_sigma_s);
-  state_.map_from_base = normalized(state_.map_from_base);
-  p -= gain * h * columns.transpose();
-  p = 0.5 * (p + p.transpose()).eval();
+  state_.speed_scale = within(state_.speed_scale, 0.0, config_.wheel_speed_scale_sigma);
+  state_.turn_scale = within(state_.turn_scale, 0.0, config_.wheel_turn_scale_sigma);
+  state_.gyro_delay_s =
+      within(state_.gyro_delay_s, config_.gyro_delay_s, config_.gyro_delay_sigma_s);
 }
 
 void InertialFilter::shift(const TPose2D& new_map_from_old_map) {

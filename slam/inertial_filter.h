@@ -10,18 +10,16 @@
 #include "slam/motion_link.h"
 #include "slam/planar_information.h"
 #include "slam/slam_config.h"
+#include "slam/wheel_slip.h"
 
 namespace rovigo::slam {
 
 /// Error-state Kalman filter of a rover on its floor. Every sensor is optional.
-/// Model: angular rate constant, acceleration fading; gyro = rate + bias; accelerometer =
-/// acceleration + rate x velocity + gravity + bias; the gyro tells late by its delay (Li & Mourikis
-/// 2014: what matters is the delay against the camera); the wheels count speed / (1 + speed scale)
-/// and, without a gyro, turn rate / (1 + turn scale); the body slips neither sideways nor off the
-/// floor. While the wheels stand still velocity and rate are zero, which teaches the biases. Slip:
-/// where wheels and gyro disagree on the turn rate a wheel slips, and the speed follows the wheel
-/// that grips; where wheels and accelerometer disagree on a change of speed both slip, and the
-/// accelerometer is followed.
+/// Model: angular rate constant, acceleration fading; gyro = rate + bias, told late by its delay
+/// (against the camera; Li & Mourikis 2014); accelerometer = acceleration + rate x velocity +
+/// gravity + bias; the wheels count speed / (1 + speed scale) and, without a gyro, turn rate /
+/// (1 + turn scale); the body slips neither sideways nor off the floor. While the wheels stand
+/// still velocity and rate are zero, which teaches the biases.
 class InertialFilter {
  public:
   explicit InertialFilter(const DeadReckoningConfig& config);
@@ -51,7 +49,7 @@ class InertialFilter {
   const InertialState& state() const { return state_; }
   double time_s() const { return time_s_; }
   TTwist2D twist() const;
-  bool slipping() const { return one_slips_ || both_slip_; }
+  bool slipping() const { return slip_.one_side() || slip_.both_sides(); }
   bool standing() const { return standing_; }
   /// Turned by something other than its wheels: somebody has carried it, until it is found again.
   bool carried() const { return carried_; }
@@ -61,26 +59,19 @@ class InertialFilter {
   std::optional<MotionStep> take_step();
 
  private:
-  struct WheelStep {
-    double dt = 0.0, distance_m = 0.0, turn_rad = 0.0;
-  };
   void propagate(double dt);
-  double distance_gripped(const WheelStep& wheels);
-  void judge_one_slipping(double wheel_turn_rate, double dt);
-  void teach_turn_scale(double wheel_turn_rate, double apart);
-  double judge_both_slipping(const WheelStep& wheels, double gripped_m);
+  SlipWitnesses witnesses() const;
+  MotionStep step_of(const WheelStep& wheels, double gripped_m, double end_s) const;
   void judge_carrying(const WheelStep& wheels);
   bool looks_standing(const WheelStep& wheels);
   void leave_standing(const WheelStep& wheels);
-  void hold_still();
+  void rest();
   void make_up_gyro_delay();
   void measure_wheels(const WheelStep& wheels, double gripped_m);
-  void measure_odometer(int counter, int speed, double innovation, double dt);
-  void hold_to_floor();
-  void forget_wheel_count();
 
   DeadReckoningConfig config_;
   InertialState state_;
+  WheelSlip slip_;
   double time_s_ = 0.0;
   bool started_ = false;
 
@@ -88,16 +79,14 @@ class InertialFilter {
   std::optional<double> gyro_time_s_, accelerometer_time_s_;
   std::optional<TPose2D> odometry_;
   double odometry_time_s_ = 0.0;
-  std::optional<double> led_rate_rad_s_;  ///< about the vertical, whose delay is made up for
-  double step_rate_rad_s_ = 0.0;          ///< of the gyro, at the last reading of the wheels
-  double gyro_turn_rad_ = 0.0;            ///< unbiased, since the last reading of the wheels
-  double raw_gyro_turn_rad_ = 0.0;        ///< as read, likewise
-  double disagreement_rad_s_ = 0.0;       ///< wheels minus gyro, smoothed
-  double felt_speed_m_s_ = 0.0;           ///< by the accelerometer, drawn to the wheels' slowly
-  double resting_s_ = 0.0;                ///< without a tick of the wheels
+  std::optional<double> led_rate_rad_s_;   ///< about the vertical, whose delay is made up for
+  std::optional<double> step_rate_rad_s_;  ///< of the gyro, at the last reading of the wheels
+  double gyro_turn_rad_ = 0.0;             ///< unbiased, since the last reading of the wheels
+  double raw_gyro_turn_rad_ = 0.0;         ///< as read, likewise
+  double resting_s_ = 0.0;                 ///< without a tick of the wheels
   std::optional<MotionStep> step_;
   double turned_standing_rad_ = 0.0;  ///< by the gyro while the wheels stood
-  bool one_slips_ = false, both_slip_ = false, standing_ = false, carried_ = false;
+  bool standing_ = false, carried_ = false;
 };
 
 }  // namespace rovigo::slam

@@ -62,19 +62,22 @@ void LandmarkMap::sight(int landmark_id, int keyframe_id, int feature) {
     const Eigen::Vector3d point = measured_point(k, feature, covariance);
     if (l.sightings.empty()) {
       l.position_map = point;
-      l.covariance = covariance;
+      l.covariance = covariance.cast<float>();
     } else {
-      const Eigen::Matrix3d gain = l.covariance * (l.covariance + covariance).inverse();
+      const Eigen::Matrix3d before = l.covariance.cast<double>();
+      const Eigen::Matrix3d gain = before * (before + covariance).inverse();
       l.position_map += gain * (point - l.position_map);
-      l.covariance -= gain * l.covariance;
-      l.covariance = 0.5 * (l.covariance + l.covariance.transpose()).eval();
-      l.covariance.diagonal().array() += 0.25 * kPointFloorM * kPointFloorM;
+      Eigen::Matrix3d after = before - gain * before;
+      after = 0.5 * (after + after.transpose()).eval();
+      after.diagonal().array() += 0.25 * kPointFloorM * kPointFloorM;
+      l.covariance = after.cast<float>();
     }
   }
   const Eigen::Vector3d to_camera =
       (k.map_from_base * base_from_camera_).translation - l.position_map;
-  l.distance_m = to_camera.norm();
-  l.direction_map = to_camera / std::max(1e-6, l.distance_m);
+  const double distance = to_camera.norm();
+  l.distance_m = static_cast<float>(distance);
+  l.direction_map = (to_camera / std::max(1e-6, distance)).cast<float>();
   l.octave = f.octave;
   l.descriptor = k.features.descriptor(static_cast<std::size_t>(feature));
   l.sightings.push_back({keyframe_id, feature});
@@ -235,8 +238,9 @@ void LandmarkMap::move_keyframes(const std::vector<Se3>& map_from_base) {
     const auto k = static_cast<std::size_t>(l.sightings.front().keyframe);
     const Se3 moved = map_from_base[k] * keyframes_[k].map_from_base.inverse();
     l.position_map = moved * l.position_map;
-    l.direction_map = moved.rotation * l.direction_map;
-    l.covariance = moved.rotation * l.covariance * moved.rotation.transpose();
+    const Eigen::Matrix3f turned = moved.rotation.cast<float>();
+    l.direction_map = turned * l.direction_map;
+    l.covariance = turned * l.covariance * turned.transpose();
   }
   for (std::size_t i = 0; i < keyframes_.size(); ++i) {
     const Keyframe& k = keyframes_[i];

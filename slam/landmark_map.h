@@ -36,16 +36,17 @@ struct Sighting {
   int feature = 0;
 };
 
+/// There are a hundred thousand: what need not be exact is in single precision.
 struct Landmark {
   Eigen::Vector3d position_map = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
-  Descriptor descriptor{};                                  ///< as last seen by a keyframe
-  Eigen::Vector3d direction_map = Eigen::Vector3d::Zero();  ///< unit, from it to that camera
-  double distance_m = 0.0;                                  ///< to that camera
-  int octave = 0;                                           ///< in that view
+  Descriptor descriptor{};  ///< as last seen by a keyframe
   std::vector<Sighting> sightings;
-  int predicted = 0;  ///< frames that should have seen it
-  int tracked = 0;    ///< frames that did
+  Eigen::Matrix3f covariance = Eigen::Matrix3f::Identity();
+  Eigen::Vector3f direction_map = Eigen::Vector3f::Zero();  ///< unit, from it to that camera
+  float distance_m = 0.0f;                                  ///< to that camera
+  int predicted = 0;                                        ///< frames that should have seen it
+  int tracked = 0;                                          ///< frames that did
+  std::uint8_t octave = 0;                                  ///< in that view
   bool alive = true;
 };
 

@@ -28,7 +28,7 @@ StoredFeature stored_feature(const LandmarkMap& map, const Keyframe& k, std::siz
   s.point_x = p.x();
   s.point_y = p.y();
   s.point_z = p.z();
-  s.sigma_m = static_cast<float>(std::sqrt(l.covariance.trace() / 3.0));
+  s.sigma_m = static_cast<float>(std::sqrt(l.covariance.trace() / 3.0f));
   s.descriptor = k.features.descriptor(i);
   return s;
 }
@@ -121,10 +121,11 @@ LandmarkMap restore_landmark_map(const maps::SavedMap& saved, const SlamConfig& 
       k.landmark_of.push_back(it->second);
       Landmark& l = landmarks[static_cast<std::size_t>(it->second)];
       l.position_map = map_from_camera * Eigen::Vector3d(s.point_x, s.point_y, s.point_z);
-      l.covariance = Eigen::Matrix3d::Identity() * static_cast<double>(s.sigma_m * s.sigma_m);
+      l.covariance = Eigen::Matrix3f::Identity() * (s.sigma_m * s.sigma_m);
       const Eigen::Vector3d to_camera = map_from_camera.translation - l.position_map;
-      l.distance_m = std::max(1e-3, to_camera.norm());
-      l.direction_map = to_camera / l.distance_m;
+      const double distance = std::max(1e-3, to_camera.norm());
+      l.distance_m = static_cast<float>(distance);
+      l.direction_map = (to_camera / distance).cast<float>();
       l.octave = s.octave;
       l.descriptor = s.descriptor;
       l.sightings.push_back({k.id, feature});

@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kReadingS = 0.02;      // white noise of the readings is stated at about 50 Hz
 constexpr double kLateralShare = 0.02;  // sideways creep, as a share of the motion
-constexpr double kSilenceS = 0.1;       // no reading for longer: the motion is not known
+constexpr double kSlipLastsS = 0.3;
+constexpr double kSilenceS = 0.1;  // no reading for longer: the motion is not known
 constexpr double kSilentSpeedMS = 0.4, kSilentTurnRadS = 1.0;  // what it may have been
 
 MotionStep part_of(const MotionStep& step, double begin_s, double end_s) {
@@ -32,7 +33,8 @@ StepNoise noise_of(const MotionStep& step, const DeadReckoningConfig& config) {
   const double speed = step.distance_m / std::max(1e-6, dt);
   const double turn_rate = step.turn_rad / std::max(1e-6, dt);
   out.along_m2 = std::pow(config.wheel_speed_sigma_m_s, 2) * dt * kReadingS;
-  if (step.slipping) out.along_m2 += std::pow(0.2 * speed, 2) * dt * 0.3;
+  const double slip = step.slipping ? 0.2 * speed : 0.0;
+  out.along_m2 += (slip * slip + std::pow(step.unseen_speed_m_s, 2)) * dt * kSlipLastsS;
   out.across_m2 = std::pow(kLateralShare, 2) * 0.1 *
                   (std::abs(step.distance_m) + 0.05 * std::abs(step.turn_rad));
   const double sigma = step.has_gyro ? config.gyro_sigma_rad_s

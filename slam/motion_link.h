@@ -19,6 +19,7 @@ struct MotionStep {
   double turn_rate_change_rad_s = 0.0;  ///< of the gyro, from begin to end
   bool has_gyro = false;
   bool slipping = false;
+  double unseen_speed_m_s = 0.0;  ///< WheelSlip::unseen_speed_m_s()
   bool standing = false;
 };
 

@@ -209,10 +209,6 @@ void MotionWatch::mark_moving(const AnchoredView& view, const LandmarkMap& map,
   }
 }
 
-void MotionWatch::reanchor(int from, int to, const Se3& to_from_from) {
-  for (Remembered& r : remembered_) r.view.reanchor(from, to, to_from_from);
-}
-
 std::size_t MotionWatch::memory_bytes() const {
   std::size_t sum = 0;
   for (const Remembered& r : remembered_) sum += r.nearest_mm.total() * r.nearest_mm.elemSize();

@@ -19,12 +19,6 @@ struct AnchoredView {
   int keyframe = -1;
   Se3 keyframe_from_level;  ///< level: as in DepthScan
   Se3 level_from_camera;    ///< optical frame
-
-  void reanchor(int from, int to, const Se3& to_from_from) {
-    if (keyframe != from) return;
-    keyframe = to;
-    keyframe_from_level = to_from_from * keyframe_from_level;
-  }
 };
 
 /// Keeps the depth images of the last seconds, reduced, and finds in a scan what moves (seen
@@ -43,9 +37,6 @@ class MotionWatch {
 
   /// Marks the rays of `scan` (seen from `view`) that end on something moving.
   void mark_moving(const AnchoredView& view, const LandmarkMap& map, DepthScan& scan) const;
-
-  /// Whatever hangs on keyframe `from` hangs on `to` from now on: `from` is about to go.
-  void reanchor(int from, int to, const Se3& to_from_from);
 
   std::size_t memory_bytes() const;
 

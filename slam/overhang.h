@@ -21,9 +21,10 @@ struct CellBands {
 inline constexpr std::uint16_t kUpperBands =
     ((1U << kHeightBands) - 1U) & ~((1U << (kHeightBands / 2)) - 1U);
 
-/// Marks cells under a top as occupied: cells that rays crossed below while everything above was
-/// hidden, between two obstacles on opposite sides at most a table apart of which one hangs (free
-/// below, occupied above). A top is taken to be whole between its edges.
+/// Marks cells under a top as occupied: cells that rays crossed below while what is above was
+/// hidden, with edges of a top of that height (few bands, free below) all around them, not farther
+/// than a table reaches. A top is taken to be whole between its edges; a shadow behind it has edges
+/// on one side only.
 void fill_overhangs(const std::vector<CellBands>& bands, maps::OccupancyGrid& grid);
 
 }  // namespace rovigo::slam

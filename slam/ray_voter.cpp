@@ -19,7 +19,8 @@ constexpr int kCrowd = 8;
 constexpr float kClearBeyondM = 2.0f;  // farther than obstacles are marked, space is still cleared
 constexpr int kMostCounts = 250;
 constexpr int kHalfBands = 2 * kHeightBands;
-constexpr double kResolved = 1.5;       // rays expected in half a band: fewer cannot tell halves
+// Rays expected in half a band, from which on each half gets one at least, however rows fall.
+constexpr double kResolved = 1.0;
 constexpr double kCrossedShare = 0.25;  // of them must pass both halves
 
 float band_height(const GridConfig& c) {

@@ -82,24 +82,28 @@ Relocalization Recovery::recognise_anywhere(const LocalMap& local, const Feature
 
 void Recovery::move_to(double time_s, const Se3& seen, const Se3& believed, int keyframe) {
   const bool doubted = health_.state() != TrackingState::kTracking;
-  const double since_s = jump_ ? jump_->since_s : doubted ? health_.doubted_since_s() : time_s;
-  jump_ = Jump{since_s, time_s, keyframe, seen * believed.inverse()};
+  const double since_s = !jumps_.empty() ? jumps_.back().until_s
+                         : doubted       ? health_.doubted_since_s()
+                                         : time_s;
+  sharpen(seen * believed.inverse());
+  jumps_.push_back({since_s, time_s, seen * believed.inverse()});
+  place_ = keyframe;
   motion_.place(time_s, seen, kFoundSigmaM, kFoundSigmaRad);
   motion_.cut_link();
 }
 
 void Recovery::sharpen(const Se3& seen_from_predicted) {
-  if (jump_) jump_->new_map_from_old_map = seen_from_predicted * jump_->new_map_from_old_map;
+  for (Jump& j : jumps_) j.new_map_from_old_map = seen_from_predicted * j.new_map_from_old_map;
 }
 
 void Recovery::mend(TrajectoryHistory& history) {
   if (health_.state() != TrackingState::kTracking) return;
   search_.reset();  // the map is about to change
   guess_.reset();
-  if (!jump_) return;
-  history.reanchor(jump_->since_s, jump_->until_s, map_, jump_->keyframe,
-                   jump_->new_map_from_old_map);
-  jump_.reset();
+  for (const Jump& j : jumps_) {
+    history.reanchor(j.since_s, j.until_s, map_, place_, j.new_map_from_old_map);
+  }
+  jumps_.clear();
 }
 
 }  // namespace rovigo::slam

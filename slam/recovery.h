@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "slam/local_map.h"
 #include "slam/localizer.h"
@@ -48,10 +49,10 @@ class Recovery {
   void recover(const CameraFrame& frame, const FeatureSet& features, std::uint64_t seed,
                LocalMap& local, TrackResult& result);
 
-  /// The first look at a place recognised is rough; those that confirm it sharpen the jump.
+  /// The first look at a place recognised is rough; those that confirm it sharpen the jumps.
   void sharpen(const Se3& seen_from_predicted);
 
-  /// A jump that the frames since have confirmed mends the poses before it.
+  /// Jumps that the frames since have confirmed mend the poses before them.
   void mend(TrajectoryHistory& history);
 
  private:
@@ -66,8 +67,7 @@ class Recovery {
   /// A jump to a place recognised, until the next frames have confirmed it.
   struct Jump {
     double since_s = 0.0, until_s = 0.0;  ///< of the poses that were believed in vain
-    int keyframe = -1;
-    Se3 new_map_from_old_map;
+    Se3 new_map_from_old_map;             ///< with all jumps since
   };
 
   SlamConfig config_;
@@ -80,7 +80,8 @@ class Recovery {
   int misses_ = 0;  ///< frames in a row that matched nothing
   std::optional<PoseEstimate> guess_;
   std::optional<Localizer> search_;  ///< in the map as it was when the rover was lost
-  std::optional<Jump> jump_;
+  std::vector<Jump> jumps_;  ///< one after the other: a place found may have to be given up again
+  int place_ = -1;           ///< the keyframe of the last one
 };
 
 }  // namespace rovigo::slam

@@ -68,7 +68,7 @@ struct GridConfig {
   double grid_resolution_m = 0.05;
   double obstacle_min_height_m = 0.05;  ///< lower surfaces are floor
   double obstacle_max_height_m = 0.50;  ///< higher surfaces can be driven under
-  double mapping_range_m = 5.5;         ///< depth beyond it is too noisy to mark obstacles
+  double mapping_range_m = 6.0;         ///< depth beyond it is too noisy to mark obstacles
 
   void describe(maps::SettingsVisitor& v);
 };

@@ -126,25 +126,6 @@ void Surroundings::cast_votes_until(double time_s, const LandmarkMap& map) {
   }
 }
 
-void Surroundings::hand_over(int from, int to, const LandmarkMap& map) {
-  const TPose2D to_from_from =
-      maps::compose(maps::inverse(to_planar(map.keyframe(to).map_from_base)),
-                    to_planar(map.keyframe(from).map_from_base));
-  for (AnchoredPatch& p : patches_) {
-    if (p.keyframe != from) continue;
-    p.keyframe = to;
-    p.keyframe_from_patch = maps::compose(to_from_from, p.keyframe_from_patch);
-  }
-  const auto known = patch_of_keyframe_.find(from);
-  if (known != patch_of_keyframe_.end()) {
-    patch_of_keyframe_.try_emplace(to, known->second);
-    patch_of_keyframe_.erase(known);
-  }
-  if (last_keyframe_ == from) last_keyframe_ = to;
-  for (PendingLook& look : pending_) look.view.reanchor(from, to, from_planar(to_from_from));
-  watch_.reanchor(from, to, from_planar(to_from_from));
-}
-
 /// For a camera that nobody knows the height of: evidence from the stored keyframes, one patch
 /// each.
 void Surroundings::add_keyframes(const LandmarkMap& map) {

@@ -30,10 +30,6 @@ class Surroundings {
   /// Adds what a frame shows, relative to `keyframe`, whenever the view has changed a little.
   void look(const CameraFrame& frame, const LandmarkMap& map, int keyframe, const Se3& pose);
 
-  /// Keyframe `from` is about to be deleted: what hangs on it hangs on `to` from now on, where it
-  /// lies now. Call it while both still have their poses.
-  void hand_over(int from, int to, const LandmarkMap& map);
-
   /// The grid, from the poses as the keyframes are now.
   maps::OccupancyGrid render(const LandmarkMap& map);
   /// The same halfway: without the newest looks, of which nobody knows yet what in them moves.

@@ -33,7 +33,7 @@ std::vector<VisibleLandmark> visible_landmarks(const LandmarkMap& map,
     if (!map.camera().in_image(pixel, 4.0)) continue;
     const Eigen::Vector3d to_camera = map_from_camera.translation - l.position_map;
     const double distance = to_camera.norm();
-    if (to_camera.dot(l.direction_map) < kMaxViewAngleCos * distance) continue;
+    if (to_camera.dot(l.direction_map.cast<double>()) < kMaxViewAngleCos * distance) continue;
     const double octave = l.octave + std::log(l.distance_m / distance) / log_scale;
     if (octave < -1.5 || octave > features.pyramid_levels + 0.5) continue;
     out.push_back({id, pixel, static_cast<int>(std::lround(octave))});
@@ -94,8 +94,8 @@ std::vector<PointObservation> observations_of(const LandmarkMap& map,
     const Feature& f = features[static_cast<std::size_t>(m.feature)];
     const MeasurementNoise noise = noise_of(f, map.config());
     const Eigen::Vector3d p = camera_from_map * l.position_map;
-    const Eigen::Matrix3d spread =
-        camera_from_map.rotation * l.covariance * camera_from_map.rotation.transpose();
+    const Eigen::Matrix3d spread = camera_from_map.rotation * l.covariance.cast<double>() *
+                                   camera_from_map.rotation.transpose();
     const double per_m = map.camera().fx() / std::max(0.1, p.z());
     // Only what moves the point across the ray moves its pixel.
     const Eigen::Vector3d ray = p.normalized();

@@ -9,10 +9,18 @@ namespace rovigo::slam {
 
 void write_tum_trajectory(const std::filesystem::path& path, const std::string& frame,
                           const std::vector<StampedPose>& poses) {
+  write_tum_trajectory(path, frame, poses.size(), [&](std::size_t i) { return poses[i]; });
+}
+
+void write_tum_trajectory(const std::filesystem::path& path, const std::string& frame,
+                          std::size_t count, const std::function<StampedPose(std::size_t)>& pose) {
   constexpr int kTimeDecimals = 7;  // MRPT's clock ticks every 100 ns
   constexpr int kPoseDecimals = 9;
+  constexpr std::size_t kLineBytes = 112;  // as most lines have
   std::string text = "# " + frame + "\n# timestamp tx ty tz qx qy qz qw\n";
-  for (const StampedPose& stamped : poses) {
+  text.reserve(text.size() + count * kLineBytes);
+  for (std::size_t i = 0; i < count; ++i) {
+    const StampedPose stamped = pose(i);
     text += fixed(stamped.time_s, kTimeDecimals);
     for (const double number : numbers_of(stamped.pose)) text += ' ' + fixed(number, kPoseDecimals);
     text += '\n';

@@ -1,6 +1,5 @@
 // rovigo map: a recording in, a map file out.
 
-#include <malloc.h>
 #include <mrpt/obs/CObservation3DRangeScan.h>
 
 #include <algorithm>
@@ -32,7 +31,6 @@ int run_map(const MapOptions& options) {
     throw maps::InputError(options.recording.string() +
                            ": holds no RGB-D frame; a map needs at least one (see `rovigo info`)");
   }
-  malloc_trim(0);
   const double cpu_before = cpu_seconds();
   maps::SavedMap map = slam.finish();
   const double cpu_ms_per_frame = reading.cpu_ms_per_frame(cpu_seconds() - cpu_before);

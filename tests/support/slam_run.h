@@ -12,7 +12,8 @@ namespace rovigo::test {
 struct SlamRun {
   maps::SavedMap map;
   slam::SlamSummary summary;
-  std::vector<slam::PoseEstimate> answers;  ///< everything that was said online, in time order
+  std::vector<slam::PoseEstimate>
+      answers;  ///< said online, in time order: every frame's, and every change
   std::vector<double> frame_times_s;
   double cpu_ms_per_frame = 0.0;  ///< reading, decoding and the final optimisation included
   double peak_mb = 0.0;           ///< resident, of this process so far

@@ -185,23 +185,6 @@ TEST_F(SurroundingsTest, WhatStoodThereAllAlongIsAnObstacle) {
   EXPECT_GT(occupied_before(surroundings_.render(map_), 3.5), 5);
 }
 
-TEST_F(SurroundingsTest, EvidenceHandedOverLiesWhereItLayAndFollowsItsNewKeyframe) {
-  for (int i = 0; i < 4; ++i) look(0.2 * i, view_of(4.0, {}));
-  Keyframe other;
-  other.map_from_base.translation = {0.3, 0.2, 0.0};
-  other.map_from_base.rotation = so3_exp({0, 0, 0.7});
-  const int to = map_.add_keyframe(std::move(other));
-  Surroundings untouched = surroundings_;
-  surroundings_.hand_over(0, to, map_);
-  EXPECT_EQ(surroundings_.render(map_).cells, untouched.render(map_).cells);
-  // The old keyframe no longer matters, the new one moves everything.
-  map_.keyframe(0).map_from_base.translation.x() = 50.0;
-  map_.keyframe(to).map_from_base.translation.x() += 1.0;
-  const maps::OccupancyGrid moved = surroundings_.render(map_);
-  EXPECT_EQ(occupied_before(moved, 4.5), 0);
-  EXPECT_GT(occupied_before(moved, 5.5), 10);
-}
-
 TEST_F(SurroundingsTest, MemoryStaysWhenTheSamePlaceIsSeenAgain) {
   for (int i = 0; i < 20; ++i) look(0.2 * i, view_of(4.0, {}));
   const std::size_t once = surroundings_.memory_bytes();
