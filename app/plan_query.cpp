@@ -37,7 +37,7 @@ RovigoConfig with_route_options(RovigoConfig config, const RouteRequest& route) 
   if (route.planner) {
     if (!planning::parse_planner_kind(*route.planner)) {
       throw maps::InputError("--planner " + *route.planner +
-                             ": must be astar, rrtconnect, rrtstar, bitstar or prmstar");
+                             ": must be astar, thetastar, rrtconnect, rrtstar, bitstar or prmstar");
     }
     config.planning.planner = *route.planner;
   }

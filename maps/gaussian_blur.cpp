@@ -45,7 +45,7 @@ double numpy_sum(const double* terms, std::size_t count) {
 
 /// Weights for distances 0 .. radius.
 std::vector<double> kernel(double sigma) {
-  const auto radius = static_cast<int>(std::floor(4.0 * sigma + 0.5));  // as SciPy rounds
+  const int radius = blur_radius_cells(sigma);
   std::vector<double> full;
   for (int x = -radius; x <= radius; ++x)
     full.push_back(std::exp(-0.5 / (sigma * sigma) * (x * x)));
@@ -238,6 +238,10 @@ class ScipyBlur {
 };
 
 }  // namespace
+
+int blur_radius_cells(double sigma_cells) {
+  return static_cast<int>(std::floor(4.0 * sigma_cells + 0.5));
+}
 
 std::vector<std::uint8_t> blur_like_scipy(const std::vector<std::uint8_t>& image, int width,
                                           int height, double sigma_cells) {

@@ -14,4 +14,7 @@ namespace rovigo::maps {
 std::vector<std::uint8_t> blur_like_scipy(const std::vector<std::uint8_t>& image, int width,
                                           int height, double sigma_cells);
 
+/// How far the kernel reaches, as SciPy rounds it.
+int blur_radius_cells(double sigma_cells);
+
 }  // namespace rovigo::maps

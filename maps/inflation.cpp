@@ -29,6 +29,10 @@ void check(const InflationConfig& config) {
           Costmap::kMaxSoft);
 }
 
+void check_sigma(double sigma_cells) {
+  require(sigma_cells >= 0.0 && sigma_cells <= kMaxReach, "sigma_cells", sigma_cells, kMaxReach);
+}
+
 /// The cost of a cell as a function of its squared distance in half cells, tabulated up to where
 /// it has fallen to nothing.
 class CostOfDistance {
@@ -79,6 +83,42 @@ class CostOfDistance {
   std::vector<std::uint8_t> table_;
 };
 
+CellRect grown(const CellRect& rect, int cells, const GridGeometry& g) {
+  return {{std::max(rect.lower.x - cells, 0), std::max(rect.lower.y - cells, 0)},
+          {std::min(rect.upper.x + cells, g.width), std::min(rect.upper.y + cells, g.height)}};
+}
+
+/// What a change reaches is inflated anew, from a piece of the grid that holds all it depends on.
+template <typename Inflate>
+void update(const OccupancyGrid& grid, const CellRect& changed, int reach_cells, Costmap& costmap,
+            const Inflate& inflate) {
+  const GridGeometry& g = grid.geometry;
+  if (costmap.geometry.width != g.width || costmap.geometry.height != g.height) {
+    throw InputError("a costmap of " + std::to_string(costmap.geometry.width) + " x " +
+                     std::to_string(costmap.geometry.height) + " cells is not that of a grid of " +
+                     std::to_string(g.width) + " x " + std::to_string(g.height));
+  }
+  const CellRect inside = grown(changed, 0, g);
+  if (inside.lower.x >= inside.upper.x || inside.lower.y >= inside.upper.y) return;
+  const CellRect reached = grown(inside, reach_cells, g);
+  const CellRect seen = grown(reached, reach_cells, g);
+  GridGeometry piece_geometry = g;
+  piece_geometry.width = seen.upper.x - seen.lower.x;
+  piece_geometry.height = seen.upper.y - seen.lower.y;
+  OccupancyGrid piece(piece_geometry, OccupancyGrid::kFree);
+  for (int y = seen.lower.y; y < seen.upper.y; ++y) {
+    const auto row = grid.cells.begin() + static_cast<std::ptrdiff_t>(g.index_of({0, y}));
+    std::copy(row + seen.lower.x, row + seen.upper.x, &piece.at({0, y - seen.lower.y}));
+  }
+  const Costmap inflated = inflate(piece);
+  for (int y = reached.lower.y; y < reached.upper.y; ++y) {
+    const std::uint8_t* row =
+        inflated.cells.data() +
+        inflated.geometry.index_of({reached.lower.x - seen.lower.x, y - seen.lower.y});
+    std::copy(row, row + (reached.upper.x - reached.lower.x), &costmap.at({reached.lower.x, y}));
+  }
+}
+
 }  // namespace
 
 void InflationConfig::describe(SettingsVisitor& v) {
@@ -125,7 +165,7 @@ Costmap inflate_safe(const OccupancyGrid& grid, const InflationConfig& config) {
 }
 
 Costmap inflate_reference(const OccupancyGrid& grid, double sigma_cells, MapMode map_mode) {
-  require(sigma_cells >= 0.0 && sigma_cells <= kMaxReach, "sigma_cells", sigma_cells, kMaxReach);
+  check_sigma(sigma_cells);
   Costmap costmap(grid.geometry, Costmap::kFree);
   if (map_mode == MapMode::kEverything) return costmap;
   std::vector<std::uint8_t> image(grid.cells.size());
@@ -138,6 +178,23 @@ Costmap inflate_reference(const OccupancyGrid& grid, double sigma_cells, MapMode
   std::transform(blurred.begin(), blurred.end(), costmap.cells.begin(),
                  [](std::uint8_t value) { return value ? Costmap::kLethal : Costmap::kFree; });
   return costmap;
+}
+
+void update_safe(const OccupancyGrid& grid, const CellRect& changed, const InflationConfig& config,
+                 Costmap& costmap) {
+  check(config);
+  const double reach = CostOfDistance(config, grid.geometry.resolution_m).reach_half_cells();
+  const double whole_grid = std::max(grid.geometry.width, grid.geometry.height);
+  update(grid, changed, static_cast<int>(std::min(0.5 * reach + 2.0, whole_grid)), costmap,
+         [&](const OccupancyGrid& piece) { return inflate_safe(piece, config); });
+}
+
+void update_reference(const OccupancyGrid& grid, const CellRect& changed, double sigma_cells,
+                      MapMode map_mode, Costmap& costmap) {
+  check_sigma(sigma_cells);
+  update(grid, changed, blur_radius_cells(sigma_cells), costmap, [&](const OccupancyGrid& piece) {
+    return inflate_reference(piece, sigma_cells, map_mode);
+  });
 }
 
 }  // namespace rovigo::maps

@@ -33,4 +33,19 @@ Costmap inflate_safe(const OccupancyGrid& grid, const InflationConfig& config);
 /// Throws InputError for a sigma outside [0, 100].
 Costmap inflate_reference(const OccupancyGrid& grid, double sigma_cells, MapMode map_mode);
 
+/// Columns and rows of a part of a grid, `upper` not included.
+struct CellRect {
+  Cell lower;
+  Cell upper;
+};
+
+/// After cells within `changed` (and no others) were changed in `grid`: brings the costmap that was
+/// made of it before up to date. The result has the same bytes as inflating anew; the time is that
+/// of the rectangle and what it reaches. Throws as inflating does, and for a costmap of another
+/// size.
+void update_safe(const OccupancyGrid& grid, const CellRect& changed, const InflationConfig& config,
+                 Costmap& costmap);
+void update_reference(const OccupancyGrid& grid, const CellRect& changed, double sigma_cells,
+                      MapMode map_mode, Costmap& costmap);
+
 }  // namespace rovigo::maps

@@ -17,7 +17,7 @@ struct SearchWeights {
 
 struct GridSearchResult {
   bool found = false;
-  std::vector<maps::Cell> cells;  ///< from start to goal, both included; empty when not found
+  std::vector<maps::Cell> cells = {};  ///< from start to goal, both included; empty when not found
   double cost_m = 0.0;            ///< length weighted by soft costs, metres
   double length_m = 0.0;          ///< of the polyline through the cell centres, metres
   std::size_t expanded_cells = 0;
@@ -30,7 +30,8 @@ struct GridSearchResult {
 /// Costs are integers in which a straight and a diagonal step stand in the ratio of a convergent of
 /// sqrt 2, so that sums are exact, order cannot depend on rounding, and 32 bits suffice. The open
 /// list is a ring of buckets a fraction of a step wide; inside a bucket the last in is the first
-/// out, and a cell whose cost improves is put in again, which keeps the result exact.
+/// out, and a cell whose cost improves is put in again, which keeps the result exact. Where all
+/// costs are equal, only the moves that MoveOrder leaves are tried.
 class GridSearch {
  public:
   /// The cheapest way from start to goal. Cells that are outside or impassable are not found.
@@ -42,9 +43,12 @@ class GridSearch {
   std::optional<maps::Cell> nearest_reachable(const SearchGrid& grid, maps::Cell start,
                                               const TPoint2D& target);
 
+  /// Beyond the grid itself.
+  std::size_t memory_bytes() const;
+
  private:
   struct Entry {
-    std::uint32_t cell;
+    std::uint32_t cell_and_move;  ///< the move that led to the cell in the top bits
     std::uint32_t cost;
   };
   struct Query;
@@ -53,9 +57,6 @@ class GridSearch {
   void forget();
   template <bool soft>
   bool run(Query& query);
-  template <bool soft>
-  void collect_path(const Query& query, GridSearchResult& result) const;
-
   std::vector<std::uint32_t> cost_to_come_;  ///< kUnreached except where a query has been
   std::vector<std::uint32_t> touched_;       ///< cells to clear before the next query
   std::vector<std::vector<Entry>> buckets_;

@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "maps/error.h"
+#include "planning/descent.h"
 
 namespace rovigo::planning {
 
 namespace {
 
-constexpr std::uint32_t kUnreached = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint32_t kMoveShift = 29;  // three bits for a move, the others for a cell
 constexpr std::uint32_t kCellMask = (std::uint32_t{1} << kMoveShift) - 1;
+constexpr std::uint32_t kStepsAtOnce = 30;
+constexpr std::uint32_t kArrived = kUnreached;
 constexpr std::uint32_t kCostLimit = kUnreached / 2;
 constexpr double kSqrt2 = 1.41421356237309504880;
 
@@ -29,7 +29,8 @@ struct JumpPointSearch::Query {
   maps::Cell start, goal;
   StepScale scale{};
   std::size_t expanded = 0;
-  std::uint32_t from = 0;  ///< the jump point being expanded
+  std::uint32_t from = 0;   ///< the jump point being expanded
+  std::uint32_t total = 0;  ///< cost plus heuristic that are due
   bool overflow = false;
 };
 
@@ -38,13 +39,7 @@ JumpPointSearch::JumpPointSearch(const SearchGrid& grid)
       geometry_(grid.geometry()),
       rows_(geometry_.width, geometry_.height),
       columns_(geometry_.height, geometry_.width) {
-  if (geometry_.size() > kCellMask) {
-    throw maps::InputError("a grid of " + std::to_string(geometry_.size()) +
-                           " cells is too large for jump point search (limit: 2^29 cells); use a "
-                           "coarser one");
-  }
-  cost_to_come_.assign(geometry_.size(), kUnreached);
-  before_.resize(geometry_.size());
+  labels_.assign(geometry_.size(), {kUnreached, 0});
   for (int y = 0; y < geometry_.height; ++y) {
     for (int x = 0; x < geometry_.width; ++x) {
       if (!grid.is_passable({x, y})) continue;
@@ -57,13 +52,12 @@ JumpPointSearch::JumpPointSearch(const SearchGrid& grid)
 }
 
 std::size_t JumpPointSearch::memory_bytes() const {
-  return rows_.memory_bytes() + columns_.memory_bytes() +
-         sizeof(std::uint32_t) * (cost_to_come_.size() + before_.size() + touched_.capacity()) +
-         sizeof(Entry) * open_.capacity();
+  return rows_.memory_bytes() + columns_.memory_bytes() + sizeof(Label) * labels_.size() +
+         sizeof(std::uint32_t) * touched_.capacity() + sizeof(Entry) * open_.capacity();
 }
 
 void JumpPointSearch::forget() {
-  for (const std::uint32_t cell : touched_) cost_to_come_[cell] = kUnreached;
+  for (const std::uint32_t cell : touched_) labels_[cell].cost = kUnreached;
   touched_.clear();
   open_.clear();
 }
@@ -81,8 +75,8 @@ GridSearchResult JumpPointSearch::find(maps::Cell start, maps::Cell goal) {
     result.expanded_cells = query.expanded;
     if (query.overflow) continue;
     if (!result.found) return result;
-    result.cost_m = static_cast<double>(cost_to_come_[index_of(goal)]) / scale.straight *
-                    geometry_.resolution_m;
+    result.cost_m =
+        static_cast<double>(labels_[index_of(goal)].cost) / scale.straight * geometry_.resolution_m;
     collect_path(query, result);
     return result;
   }
@@ -93,22 +87,30 @@ GridSearchResult JumpPointSearch::find(maps::Cell start, maps::Cell goal) {
 bool JumpPointSearch::run(Query& query) {
   const std::uint32_t goal = index_of(query.goal);
   const std::uint32_t start = index_of(query.start);
-  cost_to_come_[start] = 0;
-  before_[start] = start;
+  labels_[start] = {0, start};
   touched_.push_back(start);
   if (start == goal) return true;
   query.from = start;
+  query.total = query.scale.octile(query.start.x - query.goal.x, query.start.y - query.goal.y);
   ++query.expanded;
   for (std::size_t move = 0; move < kStraightMoves; ++move)
     go_straight(query, query.start, 0, move);
   for (std::size_t move = kStraightMoves; move < kMoves.size(); ++move) {
-    go_diagonal(query, query.start, move);
+    go_diagonal(query, query.start, 0, move, query.total);
   }
   while (!open_.empty() && !query.overflow) {
     std::pop_heap(open_.begin(), open_.end());
     const Entry entry = open_.back();
     open_.pop_back();
-    if (entry.cost != cost_to_come_[entry.cell]) continue;  // improved since
+    query.total = entry.total;
+    if (entry.run != kArrived) {
+      query.from = entry.run & kCellMask;
+      // Waiting costs time, too: from here on it goes some way at once.
+      go_diagonal(query, cell_of(entry.cell), entry.cost, entry.run >> kMoveShift,
+                  query.total + kStepsAtOnce * query.scale.straight);
+      continue;
+    }
+    if (entry.cost != labels_[entry.cell].cost) continue;  // improved since
     if (entry.cell == goal) return true;
     ++query.expanded;
     query.from = entry.cell;
@@ -120,8 +122,8 @@ bool JumpPointSearch::run(Query& query) {
 /// A jump point reached by a straight run: on, and round the corners that end beside it.
 void JumpPointSearch::expand(Query& query, std::uint32_t index) {
   const maps::Cell at = cell_of(index);
-  const std::uint32_t cost = cost_to_come_[index];
-  const std::size_t move = before_[index] >> kMoveShift;
+  const std::uint32_t cost = labels_[index].cost;
+  const std::size_t move = labels_[index].before >> kMoveShift;
   const Move& m = kMoves[move];
   go_straight(query, at, cost, move);
   for (const int side : {1, -1}) {
@@ -130,7 +132,7 @@ void JumpPointSearch::expand(Query& query, std::uint32_t index) {
         is_open(at.x + sx, at.y + sy) && !is_open(at.x + sx - m.dx, at.y + sy - m.dy);
     if (!opens) continue;
     go_straight(query, at, cost, sx > 0 ? 0 : sx < 0 ? 1 : sy > 0 ? 2 : 3);
-    go_diagonal(query, at, diagonal_of(m.dx + sx, m.dy + sy));
+    go_diagonal(query, at, cost, diagonal_of(m.dx + sx, m.dy + sy), query.total);
   }
 }
 
@@ -156,19 +158,36 @@ void JumpPointSearch::go_straight(Query& query, maps::Cell from, std::uint32_t c
   reach(query, cell, cost + steps * query.scale.straight, move);
 }
 
-/// Leaps along a diagonal: what it meets on the way is where the straight runs beside it end.
-void JumpPointSearch::go_diagonal(Query& query, maps::Cell from, std::size_t move) {
+/// Leaps along a diagonal: what it meets on the way is where the straight runs beside it end. No
+/// way through a cell is cheaper than the cell's total, so the run waits where that is above
+/// `last_due`.
+void JumpPointSearch::go_diagonal(Query& query, maps::Cell at, std::uint32_t cost, std::size_t move,
+                                  std::uint32_t last_due) {
+  constexpr int kAhead = 4;  // steps to fetch memory ahead
   const Move& m = kMoves[move];
-  std::uint32_t cost = cost_to_come_[query.from];
-  maps::Cell at = from;
-  const std::uint8_t* moves = grid_.moves() + grid_.index_of(from);
+  const std::uint8_t* moves = grid_.moves() + grid_.index_of(at);
   const int step = m.dy * grid_.stride() + m.dx;
   for (; (*moves >> move & 1U) != 0; moves += step) {
-    at = {at.x + m.dx, at.y + m.dy};
-    cost += query.scale.diagonal;
+    const maps::Cell next{at.x + m.dx, at.y + m.dy};
+    const std::uint32_t next_cost = cost + query.scale.diagonal;
+    const std::uint32_t total =
+        next_cost + query.scale.octile(next.x - query.goal.x, next.y - query.goal.y);
+    if (total > last_due) {
+      open_.push_back(
+          {total, cost, index_of(at), query.from | static_cast<std::uint32_t>(move) << kMoveShift});
+      std::push_heap(open_.begin(), open_.end());
+      return;
+    }
+    at = next;
+    cost = next_cost;
     if (at == query.goal) {
       reach(query, at, cost, move);
       return;
+    }
+    const maps::Cell ahead{at.x + kAhead * m.dx, at.y + kAhead * m.dy};
+    if (geometry_.contains(ahead)) {
+      rows_.prefetch(ahead.x, ahead.y);
+      columns_.prefetch(ahead.y, ahead.x);
     }
     go_straight(query, at, cost, along_x(move));
     go_straight(query, at, cost, along_y(move));
@@ -181,14 +200,13 @@ void JumpPointSearch::reach(Query& query, maps::Cell cell, std::uint32_t cost, s
     return;
   }
   const std::uint32_t index = index_of(cell);
-  std::uint32_t& known = cost_to_come_[index];
-  if (cost >= known) return;
-  if (known == kUnreached) touched_.push_back(index);
-  known = cost;
-  before_[index] = query.from | static_cast<std::uint32_t>(move) << kMoveShift;
+  Label& label = labels_[index];
+  if (cost >= label.cost) return;
+  if (label.cost == kUnreached) touched_.push_back(index);
+  label = {cost, query.from | static_cast<std::uint32_t>(move) << kMoveShift};
   const std::uint32_t total =
       cost + query.scale.octile(cell.x - query.goal.x, cell.y - query.goal.y);
-  open_.push_back({total, cost, index});
+  open_.push_back({total, cost, index, kArrived});
   std::push_heap(open_.begin(), open_.end());
 }
 
@@ -199,7 +217,7 @@ void JumpPointSearch::collect_path(const Query& query, GridSearchResult& result)
   result.cells.push_back(query.goal);
   while (index != start) {
     // Backwards: first the straight run, then the diagonal one.
-    const std::uint32_t before = before_[index] & kCellMask;
+    const std::uint32_t before = labels_[index].before & kCellMask;
     const maps::Cell target = cell_of(before);
     while (result.cells.back() != target) {
       maps::Cell at = result.cells.back();

@@ -12,8 +12,9 @@ namespace rovigo::planning {
 
 /// Harabor & Grastien, "Online graph pruning for pathfinding on grid maps" (2011), in the form
 /// without corner cutting; runs are scanned a word at a time and turning points on diagonals are
-/// leapt over ("Improving jump point search", 2014). Exact, for eight neighbours and equal costs;
-/// soft costs and single closed moves of the grid are not looked at.
+/// leapt over ("Improving jump point search", 2014). Diagonal runs go no further than is due, so
+/// that those away from the goal cost little. Exact, for eight neighbours and equal costs; soft
+/// costs and single closed moves of the grid are not looked at.
 class JumpPointSearch {
  public:
   /// `grid` must outlive this.
@@ -32,6 +33,9 @@ class JumpPointSearch {
     std::uint32_t total;  ///< cost plus heuristic
     std::uint32_t cost;
     std::uint32_t cell;
+    /// kArrived: a jump point to expand. Else a diagonal run that waits for its turn: where it
+    /// comes from and its move, as in Label::before.
+    std::uint32_t run;
     /// The heap's top is the greatest: the cheapest, among equals the one nearest to the goal.
     bool operator<(const Entry& other) const {
       return total != other.total ? total > other.total : cost < other.cost;
@@ -41,7 +45,8 @@ class JumpPointSearch {
   bool run(Query& query);
   void expand(Query& query, std::uint32_t cell);
   void go_straight(Query& query, maps::Cell from, std::uint32_t cost, std::size_t move);
-  void go_diagonal(Query& query, maps::Cell from, std::size_t move);
+  void go_diagonal(Query& query, maps::Cell at, std::uint32_t cost, std::size_t move,
+                   std::uint32_t last_due);
   void reach(Query& query, maps::Cell cell, std::uint32_t cost, std::size_t move);
   void collect_path(const Query& query, GridSearchResult& result) const;
   void forget();
@@ -59,10 +64,14 @@ class JumpPointSearch {
   const SearchGrid& grid_;
   maps::GridGeometry geometry_;
   BitRows rows_, columns_;
-  std::vector<std::uint32_t> cost_to_come_;  ///< kUnreached except where a query has been
-  /// The jump point before (a diagonal run leads from it, then a straight one), and in the top
-  /// bits the move of arrival.
-  std::vector<std::uint32_t> before_;
+  /// What is known of a cell, side by side in memory because it is needed together.
+  struct Label {
+    std::uint32_t cost;  ///< to come; kUnreached except where a query has been
+    /// The jump point before (a diagonal run leads from it, then a straight one), and in the top
+    /// bits the move of arrival.
+    std::uint32_t before;
+  };
+  std::vector<Label> labels_;
   std::vector<std::uint32_t> touched_;
   std::vector<Entry> open_;  ///< a heap
 };

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "planning/check.h"
+#include "planning/cost_to_go.h"
 #include "planning/escape.h"
 #include "planning/reference_spline.h"
 #include "planning/refusal.h"
@@ -121,17 +122,18 @@ bool PlanQuery::order_targets() {
   std::vector<TPoint2D> places{start_};
   places.insert(places.end(), targets_.begin(), targets_.end());
   const auto& g = context_.grid.geometry;
-  const SearchWeights weights{.soft_cost = context_.config.astar.soft_cost_weight};
-  const auto between = [&](std::size_t i, std::size_t j) {
-    if (g.cell_at(places[i]) == g.cell_at(places[j])) return maps::distance(places[i], places[j]);
-    const auto way =
-        search_.find(context_.search_grid, g.cell_at(places[i]), g.cell_at(places[j]), weights);
-    result_.expanded_cells += way.expanded_cells;
-    return way.found ? way.length_m : std::numeric_limits<double>::infinity();
-  };
   std::vector<std::vector<double>> cost(places.size(), std::vector<double>(places.size(), 0.0));
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    for (std::size_t j = i + 1; j < places.size(); ++j) cost[i][j] = cost[j][i] = between(i, j);
+  CostToGo ways;  // from all other places to one, at once
+  for (std::size_t i = 0; i + 1 < places.size(); ++i) {
+    const maps::Cell to = g.cell_at(places[i]);
+    ways.compute(context_.search_grid, {to}, context_.config.astar.soft_cost_weight);
+    for (std::size_t j = i + 1; j < places.size(); ++j) {
+      const auto way = ways.way_from(g.cell_at(places[j]));
+      const double length = way.cells.size() == 1 ? maps::distance(places[i], places[j])
+                            : way.cells.empty()   ? std::numeric_limits<double>::infinity()
+                                                  : way.length_m;
+      cost[i][j] = cost[j][i] = length;
+    }
   }
   const std::vector<TPoint2D> as_given = targets_;
   result_.via_order.clear();
@@ -155,13 +157,14 @@ bool PlanQuery::search_legs() {
 
 bool PlanQuery::search_leg(const TPoint2D& from, const TPoint2D& to, const std::string& name) {
   const auto& g = context_.grid.geometry;
-  const SearchWeights weights{.soft_cost = context_.config.astar.soft_cost_weight,
-                              .heuristic = context_.config.astar.heuristic_weight};
+  // Theta* asks for the shortest way: no detours for soft costs.
+  const double soft_cost_weight =
+      context_.kind == PlannerKind::kThetaStar ? 0.0 : context_.config.astar.soft_cost_weight;
   std::optional<SearchGrid> narrowed;  // with moves closed that prove narrower than the rover
   constexpr int kMostClosed = 50;
   for (int attempt = 0; attempt <= kMostClosed; ++attempt) {
     const SearchGrid& cells = narrowed ? *narrowed : context_.search_grid;
-    const GridSearchResult found = search_.find(cells, g.cell_at(from), g.cell_at(to), weights);
+    const GridSearchResult found = find_way(cells, g.cell_at(from), g.cell_at(to));
     result_.expanded_cells += found.expanded_cells;
     if (!found.found) break;
     Path leg;
@@ -169,12 +172,11 @@ bool PlanQuery::search_leg(const TPoint2D& from, const TPoint2D& to, const std::
     for (const maps::Cell cell : found.cells) append(leg.points, g.center_of(cell));
     append(leg.points, to);
     double searched_m = found.length_m;
-    if (context_.kind != PlannerKind::kAStar) {
+    if (context_.kind != PlannerKind::kAStar && context_.kind != PlannerKind::kThetaStar) {
       if (!sample_leg(from, to, name, leg)) return false;
       searched_m = length_m(leg);
     }
-    const ShortcutResult straight =
-        shortcut(context_.space, leg, context_.config.astar.soft_cost_weight);
+    const ShortcutResult straight = shortcut(context_.space, leg, soft_cost_weight);
     if (straight.ok) {
       for (const TPoint2D& p : leg.points) append(result_.grid_path.points, p);
       for (const TPoint2D& p : straight.path.points) append(problem_.polyline.points, p);
@@ -189,6 +191,19 @@ bool PlanQuery::search_leg(const TPoint2D& from, const TPoint2D& to, const std::
       PlanStatus::kNoPath, to,
       "No way wide enough for robot_radius_m = " + meters(context_.inflation.robot_radius_m) +
           " leads from " + text_of(from) + " to the " + name + " " + text_of(to) + ".");
+}
+
+GridSearchResult PlanQuery::find_way(const SearchGrid& cells, maps::Cell from, maps::Cell to) {
+  if (context_.kind != PlannerKind::kThetaStar) {
+    return search_.find(cells, from, to,
+                        {.soft_cost = context_.config.astar.soft_cost_weight,
+                         .heuristic = context_.config.astar.heuristic_weight});
+  }
+  // Between cell centres a line may come nearer to an obstacle than the centres do.
+  const auto& g = context_.grid.geometry;
+  return any_angle_.find(cells, from, to, [&](maps::Cell a, maps::Cell b) {
+    return context_.space.is_free(g.center_of(a), g.center_of(b));
+  });
 }
 
 bool PlanQuery::sample_leg(const TPoint2D& from, const TPoint2D& to, const std::string& name,

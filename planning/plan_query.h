@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "planning/any_angle_search.h"
 #include "planning/astar.h"
 #include "planning/free_space.h"
 #include "planning/planner.h"
@@ -30,10 +31,19 @@ struct PlanningContext {
   PlanningContext& operator=(const PlanningContext&) = delete;
 };
 
+/// Memory that one query at a time works in.
+struct SearchWorkspace {
+  GridSearch search;
+  AnyAngleSearch any_angle;
+};
+
 class PlanQuery {
  public:
-  PlanQuery(const PlanningContext& context, GridSearch& search, const PlanRequest& request)
-      : context_(context), search_(search), request_(request) {}
+  PlanQuery(const PlanningContext& context, SearchWorkspace& workspace, const PlanRequest& request)
+      : context_(context),
+        search_(workspace.search),
+        any_angle_(workspace.any_angle),
+        request_(request) {}
 
   PlanResult run();
 
@@ -43,6 +53,7 @@ class PlanQuery {
   bool order_targets();
   bool search_legs();
   bool search_leg(const TPoint2D& from, const TPoint2D& to, const std::string& name);
+  GridSearchResult find_way(const SearchGrid& cells, maps::Cell from, maps::Cell to);
   bool sample_leg(const TPoint2D& from, const TPoint2D& to, const std::string& name, Path& leg);
   void smooth_path();
   void reference_path();
@@ -63,6 +74,7 @@ class PlanQuery {
 
   const PlanningContext& context_;
   GridSearch& search_;
+  AnyAngleSearch& any_angle_;
   const PlanRequest& request_;
 
   PlanResult result_;

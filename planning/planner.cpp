@@ -11,21 +11,21 @@ namespace {
 /// Workspaces for searches, one per query in flight, so that queries may run side by side.
 class SearchPool {
  public:
-  std::unique_ptr<GridSearch> take() {
+  std::unique_ptr<SearchWorkspace> take() {
     const std::lock_guard lock(mutex_);
-    if (idle_.empty()) return std::make_unique<GridSearch>();
+    if (idle_.empty()) return std::make_unique<SearchWorkspace>();
     auto search = std::move(idle_.back());
     idle_.pop_back();
     return search;
   }
-  void give_back(std::unique_ptr<GridSearch> search) {
+  void give_back(std::unique_ptr<SearchWorkspace> search) {
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(search));
   }
 
  private:
   std::mutex mutex_;
-  std::vector<std::unique_ptr<GridSearch>> idle_;
+  std::vector<std::unique_ptr<SearchWorkspace>> idle_;
 };
 
 }  // namespace

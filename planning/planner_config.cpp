@@ -8,6 +8,8 @@ const char* to_string(PlannerKind kind) {
   switch (kind) {
     case PlannerKind::kAStar:
       return "astar";
+    case PlannerKind::kThetaStar:
+      return "thetastar";
     case PlannerKind::kRrtConnect:
       return "rrtconnect";
     case PlannerKind::kRrtStar:
@@ -21,8 +23,8 @@ const char* to_string(PlannerKind kind) {
 }
 
 std::optional<PlannerKind> parse_planner_kind(const std::string& text) {
-  for (const auto kind : {PlannerKind::kAStar, PlannerKind::kRrtConnect, PlannerKind::kRrtStar,
-                          PlannerKind::kBitStar, PlannerKind::kPrmStar}) {
+  for (const auto kind : {PlannerKind::kAStar, PlannerKind::kThetaStar, PlannerKind::kRrtConnect,
+                          PlannerKind::kRrtStar, PlannerKind::kBitStar, PlannerKind::kPrmStar}) {
     if (text == to_string(kind)) return kind;
   }
   return std::nullopt;
@@ -165,7 +167,7 @@ void TimingConfig::describe(maps::SettingsVisitor& v) {
 void PlannerConfig::describe(maps::SettingsVisitor& v) {
   v.text({.name = "planner",
           .help = "Search method.",
-          .choices = {"astar", "rrtconnect", "rrtstar", "bitstar", "prmstar"},
+          .choices = {"astar", "thetastar", "rrtconnect", "rrtstar", "bitstar", "prmstar"},
           .advanced = false},
          planner);
   v.real({.name = "escape_max_distance_m",

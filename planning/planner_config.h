@@ -10,13 +10,14 @@ namespace rovigo::planning {
 
 enum class PlannerKind {
   kAStar,       ///< soft-cost A* on the inflated grid
+  kThetaStar,   ///< Theta*: the shortest way, straight lines in any direction, no soft costs
   kRrtConnect,  ///< OMPL RRTConnect in the plane: any path, fast
   kRrtStar,     ///< OMPL RRT* in the plane: shorter the more iterations it gets
   kBitStar,     ///< OMPL BIT* in the plane: batches of samples, best ways first
   kPrmStar,     ///< OMPL PRM* in the plane: a roadmap, the shortest way on it
 };
 
-/// `astar`, `rrtconnect`, `rrtstar`, `bitstar`, `prmstar`.
+/// `astar`, `thetastar`, `rrtconnect`, `rrtstar`, `bitstar`, `prmstar`.
 const char* to_string(PlannerKind kind);
 std::optional<PlannerKind> parse_planner_kind(const std::string& text);
 

@@ -6,15 +6,15 @@ namespace rovigo::planning {
 
 namespace {
 
-/// Padded arrays are indexed with 32 bits; no grid a person uses comes near.
+/// Searches keep an index and a move in 32 bits; no grid a person uses comes near.
 void check_size(const maps::GridGeometry& g) {
-  constexpr std::size_t kLimit = std::size_t{1} << 30;
+  constexpr std::size_t kLimit = std::size_t{1} << SearchGrid::kIndexBits;
   const auto padded =
       (static_cast<std::size_t>(g.width) + 2) * (static_cast<std::size_t>(g.height) + 2);
   if (g.width < 0 || g.height < 0 || padded > kLimit) {
     throw maps::InputError("a grid of " + std::to_string(g.width) + " x " +
                            std::to_string(g.height) +
-                           " cells is too large to plan on (limit: 2^30 cells); use a coarser one");
+                           " cells is too large to plan on (limit: 2^29 cells); use a coarser one");
   }
 }
 
@@ -70,6 +70,7 @@ std::array<int, 8> SearchGrid::offsets() const {
 
 void SearchGrid::build_moves(int connectivity) {
   moves_.assign(passable_.size(), 0);
+  has_every_move_ = connectivity == 8;
   const int s = stride();
   const unsigned diagonals = connectivity == 8 ? 0xFFU : 0x0FU;
   for (int y = 0; y < geometry_.height; ++y) {
@@ -89,6 +90,7 @@ void SearchGrid::build_moves(int connectivity) {
 }
 
 void SearchGrid::close_move(maps::Cell from, maps::Cell to) {
+  has_every_move_ = false;
   for (std::size_t d = 0; d < kMoves.size(); ++d) {
     if (from.x + kMoves[d].dx == to.x && from.y + kMoves[d].dy == to.y) {
       moves_[index_of(from)] &= static_cast<std::uint8_t>(~(1U << d));

@@ -49,13 +49,18 @@ class SearchGrid {
   bool is_passable(maps::Cell c) const {
     return geometry_.contains(c) && passable_[index_of(c)] != 0;
   }
+  /// Eight neighbours, and no move closed by hand?
+  bool has_every_move() const { return has_every_move_; }
   /// Closes one move in both directions (for gaps that prove narrower than the rover).
   void close_move(maps::Cell from, maps::Cell to);
+
+  static constexpr int kIndexBits = 29;  ///< that an index of a cell takes at most
 
  private:
   void build_moves(int connectivity);
 
   maps::GridGeometry geometry_;
+  bool has_every_move_ = true;
   std::vector<std::uint8_t> passable_;
   std::vector<std::uint8_t> moves_;
   std::vector<std::uint8_t> costs_;

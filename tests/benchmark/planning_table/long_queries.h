@@ -1,6 +1,7 @@
 #pragma once
 // The maps people plan on, and long queries on them.
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <random>
@@ -10,7 +11,7 @@
 
 #include "maps/movingai.h"
 #include "maps/ros_map.h"
-#include "planning/search_grid.h"
+#include "planning/cost_to_go.h"
 
 namespace rovigo::benchmarks {
 
@@ -30,47 +31,56 @@ inline maps::OccupancyGrid load_map(const std::string& file) {
                                     : maps::load_ros_map(path, warnings);
 }
 
-using CellPair = std::pair<maps::Cell, maps::Cell>;
-
-/// Steps along the grid to every cell that can be reached from `start`, in the order of a flood.
-struct Flood {
-  Flood(const planning::SearchGrid& grid, maps::Cell start) : steps(grid.padded_size(), -1) {
-    const auto offsets = grid.offsets();
-    queue.push_back(grid.index_of(start));
-    steps[queue.front()] = 0;
-    for (std::size_t i = 0; i < queue.size(); ++i) {
-      for (std::size_t move = 0; move < 8; ++move) {
-        if ((grid.moves()[queue[i]] >> move & 1U) == 0) continue;
-        const auto next = static_cast<std::uint32_t>(static_cast<int>(queue[i]) + offsets[move]);
-        if (steps[next] >= 0) continue;
-        steps[next] = steps[queue[i]] + 1;
-        queue.push_back(next);
-      }
+/// A grid repeated side by side until it has `side` x `side` cells.
+inline maps::OccupancyGrid tiled(const maps::OccupancyGrid& grid, int side) {
+  maps::OccupancyGrid out;
+  out.geometry = grid.geometry;
+  out.geometry.width = out.geometry.height = side;
+  out.cells.resize(out.geometry.size());
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      out.cells[out.geometry.index_of({x, y})] =
+          grid.at({x % grid.geometry.width, y % grid.geometry.height});
     }
   }
-  std::vector<int> steps;
-  std::vector<std::uint32_t> queue;
-};
+  return out;
+}
 
-/// From random starts to goals at least 0.6 times as many steps away as the farthest reachable
-/// cell, by a fixed seed.
+inline std::vector<maps::Cell> passable_cells(const planning::SearchGrid& grid) {
+  std::vector<maps::Cell> out;
+  for (std::size_t i = 0; i < grid.geometry().size(); ++i) {
+    const maps::Cell cell = grid.geometry().cell_of(i);
+    if (grid.is_passable(cell)) out.push_back(cell);
+  }
+  return out;
+}
+
+using CellPair = std::pair<maps::Cell, maps::Cell>;
+
+/// From random starts to random goals at least 0.6 times as far along the grid as the farthest cell
+/// that can be reached, by a fixed seed; four goals to a start.
 inline std::vector<CellPair> long_queries(const planning::SearchGrid& grid, std::size_t count) {
   std::mt19937_64 random(2024);
-  const auto& g = grid.geometry();
-  std::vector<maps::Cell> passable;
-  for (std::size_t i = 0; i < g.size(); ++i) {
-    if (grid.is_passable(g.cell_of(i))) passable.push_back(g.cell_of(i));
-  }
+  const std::vector<maps::Cell> passable = passable_cells(grid);
   std::vector<CellPair> out;
+  planning::CostToGo way;
   while (out.size() < count && !passable.empty()) {
     const maps::Cell start = passable[random() % passable.size()];
-    const Flood flood(grid, start);
-    const int farthest = flood.steps[flood.queue.back()];
-    if (flood.queue.size() < passable.size() / 4) continue;  // a pocket
+    way.compute(grid, {start}, 0.0);
+    double farthest = 0.0;
+    std::size_t reached = 0;
+    for (const maps::Cell cell : passable) {
+      const double length = way.cost_m(cell);
+      if (!std::isfinite(length)) continue;
+      ++reached;
+      farthest = std::max(farthest, length);
+    }
+    if (reached < passable.size() / 4) continue;  // a pocket
     for (int k = 0; k < 4 && out.size() < count;) {
-      const std::uint32_t goal = flood.queue[random() % flood.queue.size()];
-      if (flood.steps[goal] < 0.6 * farthest) continue;
-      out.emplace_back(start, grid.cell_of(goal));
+      const maps::Cell goal = passable[random() % passable.size()];
+      const double length = way.cost_m(goal);
+      if (!std::isfinite(length) || length < 0.6 * farthest) continue;
+      out.emplace_back(start, goal);
       ++k;
     }
   }

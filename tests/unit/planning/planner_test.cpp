@@ -241,6 +241,24 @@ TEST(Planner, SoftCostsKeepAwayFromWalls) {
   EXPECT_GT(height(far), 0.55);
 }
 
+TEST(Planner, ThetaStarGoesAsStraightAsThereIsRoom) {
+  const auto grid = two_rooms();
+  PlannerConfig config;
+  config.planner = "thetastar";
+  const auto any_angle = planner_for(grid, config).plan(from_to({1, 1}, {2.5, 5}));
+  expect_sound(any_angle, grid);
+  EXPECT_NEAR(any_angle.search_length_m, std::hypot(1.5, 4.0), 0.06);
+  config.astar.soft_cost_weight = 0.0;
+  config.planner = "astar";
+  const auto on_grid = planner_for(grid, config).plan(from_to({1, 1}, {5, 1}));
+  config.planner = "thetastar";
+  const auto round_the_wall = planner_for(grid, config).plan(from_to({1, 1}, {5, 1}));
+  expect_sound(round_the_wall, grid);
+  EXPECT_LT(round_the_wall.search_length_m, on_grid.search_length_m);
+  EXPECT_EQ(planner_for(grid, config).plan(from_to({1, 1}, {6.5, 1.5})).status,
+            PlanStatus::kNoPath);
+}
+
 class SamplingPlanners : public testing::TestWithParam<const char*> {};
 
 TEST_P(SamplingPlanners, FindASoundWayAndTheSameOneForTheSameSeed) {
@@ -364,8 +382,8 @@ TEST(PlannerConfig, BadSettingsAreNamed) {
 }
 
 TEST(PlannerConfig, KindsHaveNamesThatParseBack) {
-  for (const auto kind : {PlannerKind::kAStar, PlannerKind::kRrtConnect, PlannerKind::kRrtStar,
-                          PlannerKind::kBitStar, PlannerKind::kPrmStar}) {
+  for (const auto kind : {PlannerKind::kAStar, PlannerKind::kThetaStar, PlannerKind::kRrtConnect,
+                          PlannerKind::kRrtStar, PlannerKind::kBitStar, PlannerKind::kPrmStar}) {
     EXPECT_EQ(parse_planner_kind(to_string(kind)), kind);
   }
   EXPECT_FALSE(parse_planner_kind("theta").has_value());
