@@ -45,6 +45,7 @@ bool CostToGo::flood(const StepPrices& prices, const std::vector<maps::Cell>& go
   const auto expand = [&](std::uint32_t cell, unsigned tried) {
     const std::uint32_t cost_here = costs[cell];
     const std::uint8_t here = soft ? soft_costs[cell] : std::uint8_t{0};
+    if (soft) tried &= prices.improving_moves(costs + cell, soft_costs + cell, offsets);
     for_each_move(tried, [&](std::size_t move) {
       const auto next = static_cast<std::uint32_t>(static_cast<int>(cell) + offsets[move]);
       const std::uint32_t cost =

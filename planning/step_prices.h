@@ -38,6 +38,22 @@ class StepPrices {
     }
   }
 
+  /// Of the eight moves from a cell, those that lead to lower costs than are known. Looks at all of
+  /// them, open or not, which is quicker than to guess. `costs` and `soft_costs` begin at the cell.
+  unsigned improving_moves(const std::uint32_t* costs, const std::uint8_t* soft_costs,
+                           const std::array<int, 8>& offsets) const {
+    unsigned moves = 0;
+    const std::uint32_t straight = *costs + half_straight_[*soft_costs];
+    const std::uint32_t diagonal = *costs + half_diagonal_[*soft_costs];
+    for (std::size_t move = 0; move < kMoves.size(); ++move) {
+      const std::uint8_t to = soft_costs[offsets[move]];
+      const std::uint32_t reached =
+          move < kStraightMoves ? straight + half_straight_[to] : diagonal + half_diagonal_[to];
+      moves |= static_cast<unsigned>(reached < costs[offsets[move]]) << move;
+    }
+    return moves;
+  }
+
  private:
   StepScale scale_;
   std::array<std::uint32_t, 256> half_straight_{};  ///< half the cost of a step, by soft cost
