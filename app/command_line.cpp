@@ -31,7 +31,8 @@ void add_route(CLI::App& command, RouteRequest& route) {
       ->allow_extra_args(false);
   command.add_option("--order", route.order, "Order of the stops: given or shortest")
       ->check(CLI::IsMember({"given", "shortest"}));
-  command.add_option("--planner", route.planner, "astar, thetastar, rrtconnect or rrtstar");
+  command.add_option("--planner", route.planner,
+                     "astar, thetastar, rrtconnect, rrtstar, bitstar or prmstar");
   command.add_option("--map-mode", route.map_mode,
                      "0 only known-free ground, 1 unknown ground too, 2 everything is passable");
 }

@@ -37,7 +37,7 @@ RovigoConfig with_route_options(RovigoConfig config, const RouteRequest& route) 
   if (route.planner) {
     if (!planning::parse_planner_kind(*route.planner)) {
       throw maps::InputError("--planner " + *route.planner +
-                             ": must be astar, thetastar, rrtconnect or rrtstar");
+                             ": must be astar, thetastar, rrtconnect, rrtstar, bitstar or prmstar");
     }
     config.planning.planner = *route.planner;
   }
@@ -96,6 +96,7 @@ nlohmann::ordered_json plan_json(const TimedPlan& plan) {
     object["min_clearance_m"] = r.min_clearance_m;
     object["duration_s"] = r.trajectory.duration_s();
     object["escape"] = r.escape;
+    object["unsafe_samples"] = r.unsafe_samples;
   } else if (r.nearest_reachable_goal) {
     object["nearest_reachable_goal"] = {r.nearest_reachable_goal->x, r.nearest_reachable_goal->y};
   } else {

@@ -41,14 +41,16 @@ CubicBSpline::CubicBSpline(std::vector<double> knots, std::vector<TPoint2D> cont
   assert(control_.size() >= 4 && knots_.size() == control_.size() + 4);
 }
 
-CubicBSpline CubicBSpline::uniform(const std::vector<TPoint2D>& points) {
+CubicBSpline CubicBSpline::uniform(const std::vector<TPoint2D>& points,
+                                   const TPoint2D& start_second) {
   assert(points.size() >= 2);
   const std::size_t n = points.size();
   // Phantom points mirrored at the ends make the curve begin and end there: (p + 4 q + r) / 6 = q
   // when p and r lie opposite each other.
   std::vector<TPoint2D> control;
   control.reserve(n + 2);
-  control.push_back({2.0 * points[0].x - points[1].x, 2.0 * points[0].y - points[1].y});
+  control.push_back({2.0 * points[0].x - points[1].x + start_second.x,
+                     2.0 * points[0].y - points[1].y + start_second.y});
   control.insert(control.end(), points.begin(), points.end());
   control.push_back(
       {2.0 * points[n - 1].x - points[n - 2].x, 2.0 * points[n - 1].y - points[n - 2].y});

@@ -31,7 +31,9 @@ class CubicBSpline {
   /// The spline with uniform knots whose interior control points these are, at least two: it begins
   /// at the first and ends at the last, with zero second derivative and tangents along the first
   /// and last leg. Domain [0, points.size() - 1].
-  static CubicBSpline uniform(const std::vector<TPoint2D>& points);
+  /// With a second derivative at the start it begins a sixth of that beyond the first point.
+  static CubicBSpline uniform(const std::vector<TPoint2D>& points,
+                              const TPoint2D& start_second = {0.0, 0.0});
 
   double begin() const { return knots_[3]; }
   double end() const { return knots_[knots_.size() - 4]; }

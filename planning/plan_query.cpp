@@ -6,8 +6,10 @@
 #include <limits>
 #include <numeric>
 
+#include "planning/check.h"
 #include "planning/cost_to_go.h"
 #include "planning/escape.h"
+#include "planning/reference_spline.h"
 #include "planning/refusal.h"
 #include "planning/sampling_planner.h"
 #include "planning/shortcut.h"
@@ -170,7 +172,7 @@ bool PlanQuery::search_leg(const TPoint2D& from, const TPoint2D& to, const std::
     for (const maps::Cell cell : found.cells) append(leg.points, g.center_of(cell));
     append(leg.points, to);
     double searched_m = found.length_m;
-    if (context_.kind == PlannerKind::kRrtConnect || context_.kind == PlannerKind::kRrtStar) {
+    if (context_.kind != PlannerKind::kAStar && context_.kind != PlannerKind::kThetaStar) {
       if (!sample_leg(from, to, name, leg)) return false;
       searched_m = length_m(leg);
     }
@@ -220,8 +222,32 @@ bool PlanQuery::sample_leg(const TPoint2D& from, const TPoint2D& to, const std::
   return true;
 }
 
+bool PlanQuery::is_reference() const { return context_.config.spline.mode == "reference"; }
+
+void PlanQuery::reference_path() {
+  std::vector<TPoint2D> cells;  // in cells, the smoothing factor's unit
+  for (const TPoint2D& p : result_.grid_path.points) {
+    const double scale = 1.0 / context_.grid.geometry.resolution_m;
+    cells.push_back({p.x * scale, p.y * scale});
+  }
+  while (cells.size() < 4) {  // a cubic needs four
+    for (std::size_t i = cells.size() - 1; i > 0; --i) {
+      const TPoint2D middle{0.5 * (cells[i - 1].x + cells[i].x),
+                            0.5 * (cells[i - 1].y + cells[i].y)};
+      cells.insert(cells.begin() + static_cast<std::ptrdiff_t>(i), middle);
+    }
+  }
+  const double s = context_.config.spline.smoothing_cells2;
+  const CubicBSpline curve =
+      reference_spline(cells, s < 0.0 ? default_smoothing(cells.size()) : s).curve;
+  std::vector<TPoint2D> control = curve.control_points();
+  for (TPoint2D& c : control) c *= context_.grid.geometry.resolution_m;
+  pieces_.push_back({.curve = CubicBSpline(curve.knots(), std::move(control))});
+}
+
 void PlanQuery::smooth_path() {
   if (problem_.polyline.points.size() < 2) return;
+  if (is_reference()) return reference_path();
   const auto wanted = [&](bool given, double heading, const TPoint2D& a, const TPoint2D& b) {
     const double along = std::atan2(b.y - a.y, b.x - a.x);
     const double off = std::abs(maps::wrap_angle(heading - along));
@@ -239,7 +265,7 @@ void PlanQuery::smooth_path() {
 
 void PlanQuery::time_path() {
   time_pieces(pieces_);
-  if (is_safe(pieces_, result_.trajectory)) return;
+  if (is_reference() || is_safe(pieces_, result_.trajectory)) return;
   // Never expected; but a plan that fails its own check is not handed out.
   SplineConfig straight = context_.config.spline;
   straight.smooth = false;
@@ -254,6 +280,7 @@ void PlanQuery::time_pieces(const std::vector<PathPiece>& pieces) {
   TimingProblem timing;
   timing.pieces = escape_pieces();
   timing.at = start_;
+  timing.room_m = [this](const TPoint2D& p) { return context_.space.slope(p).room_m; };
   timing.pieces.insert(timing.pieces.end(), pieces.begin(), pieces.end());
   if (request_.start_heading_given) timing.start_heading_rad = request_.start.phi;
   if (request_.goal_heading_given) timing.goal_heading_rad = request_.goal.phi;
@@ -301,7 +328,27 @@ void PlanQuery::measure() {
         "ground; the first " +
         meters(length_m(Path{escape_})) + " leave it slowly. ";
   }
+  if (is_reference()) report_cuts();
   if (!result_.message.empty()) result_.message.pop_back();  // the last space
+}
+
+void PlanQuery::report_cuts() {
+  if (context_.inflation.map_mode == maps::MapMode::kEverything) return;
+  CheckOptions options;
+  options.robot_radius_m = context_.inflation.robot_radius_m;
+  options.limits = limits_of(context_.robot, context_.config.timing);
+  options.escape_allowed = result_.escape;
+  options.unknown_is_blocked = context_.inflation.map_mode == maps::MapMode::kKnownFree;
+  options.clearance_looked_m = context_.inflation.robot_radius_m + 0.1;
+  const TrajectoryReport report = check(result_.trajectory, context_.grid, options);
+  result_.unsafe_samples = report.unsafe_samples;
+  if (report.unsafe_samples == 0) return;
+  result_.message += "This reference spline is not safe to drive: it comes within " +
+                     meters(report.min_clearance_m) +
+                     " of an obstacle or enters blocked ground, "
+                     "where robot_radius_m = " +
+                     meters(context_.inflation.robot_radius_m) +
+                     " must stay clear; spline_mode = safe keeps it. ";
 }
 
 void PlanQuery::begin(PlanStage stage) const {

@@ -56,8 +56,10 @@ class PlanQuery {
   GridSearchResult find_way(const SearchGrid& cells, maps::Cell from, maps::Cell to);
   bool sample_leg(const TPoint2D& from, const TPoint2D& to, const std::string& name, Path& leg);
   void smooth_path();
+  void reference_path();
   void time_path();
   void measure();
+  void report_cuts();
 
   void begin(PlanStage stage) const;
   bool refuse(PlanStatus status, const TPoint2D& point, std::string message);
@@ -66,6 +68,7 @@ class PlanQuery {
   std::string map_extent() const;
   std::string name_of_target(std::size_t index) const;
   std::vector<PathPiece> escape_pieces() const;
+  bool is_reference() const;
   bool is_safe(const std::vector<PathPiece>& pieces, const Trajectory& trajectory) const;
   void time_pieces(const std::vector<PathPiece>& pieces);
 

@@ -52,6 +52,9 @@ struct PlanResult {
   double min_clearance_m = 0.0;  ///< footprint circle to the nearest occupied cell's edge
   std::size_t expanded_cells = 0;
   std::vector<std::size_t> via_order;  ///< indices into the request's via, as they are visited
+  /// Reference splines only: points at most 2 mm apart that are nearer to an obstacle than
+  /// robot_radius_m or on blocked ground; the message says so when there are any.
+  std::size_t unsafe_samples = 0;
   bool escape = false;  ///< started nearer to an obstacle than robot_radius_m; leaves it slowly
 };
 

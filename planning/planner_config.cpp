@@ -14,13 +14,17 @@ const char* to_string(PlannerKind kind) {
       return "rrtconnect";
     case PlannerKind::kRrtStar:
       return "rrtstar";
+    case PlannerKind::kBitStar:
+      return "bitstar";
+    case PlannerKind::kPrmStar:
+      return "prmstar";
   }
   return "astar";
 }
 
 std::optional<PlannerKind> parse_planner_kind(const std::string& text) {
   for (const auto kind : {PlannerKind::kAStar, PlannerKind::kThetaStar, PlannerKind::kRrtConnect,
-                          PlannerKind::kRrtStar}) {
+                          PlannerKind::kRrtStar, PlannerKind::kBitStar, PlannerKind::kPrmStar}) {
     if (text == to_string(kind)) return kind;
   }
   return std::nullopt;
@@ -57,6 +61,16 @@ void OmplConfig::describe(maps::SettingsVisitor& v) {
              .min = 1,
              .max = 10000000},
             rrtstar_iterations);
+  v.integer({.name = "bitstar_iterations",
+             .help = "Edges BIT* may look at; more give a shorter path.",
+             .min = 1,
+             .max = 10000000},
+            bitstar_iterations);
+  v.integer({.name = "prmstar_iterations",
+             .help = "Steps of PRM*, two to a sample; more give a shorter path.",
+             .min = 1,
+             .max = 1000000},
+            prmstar_iterations);
   v.real({.name = "rrt_step_m", .help = "Longest edge of the tree.", .min = 0.05, .max = 100.0},
          step_m);
   v.real({.name = "rrt_goal_bias",
@@ -67,6 +81,18 @@ void OmplConfig::describe(maps::SettingsVisitor& v) {
 }
 
 void SplineConfig::describe(maps::SettingsVisitor& v) {
+  v.text({.name = "spline_mode",
+          .help = "How the path is rounded: safe keeps clear of obstacles; reference is SciPy's "
+                  "smoothing spline through the cells, which may cut through them (the plan then "
+                  "says so).",
+          .choices = {"safe", "reference"}},
+         mode);
+  v.real({.name = "spline_smoothing_cells2",
+          .help = "Reference mode: bound on the sum of squared distances from the cells, in cells "
+                  "squared; 0 passes through all, -1 takes SciPy's default.",
+          .min = -1.0,
+          .max = 1e6},
+         smoothing_cells2);
   v.flag({.name = "smooth_path",
           .help = "Round the path with a cubic B-spline; otherwise drive straight pieces and turn "
                   "in place between them."},
@@ -120,6 +146,17 @@ void TimingConfig::describe(maps::SettingsVisitor& v) {
           .min = 0.02,
           .max = 0.5},
          escape_speed_m_s);
+  v.real({.name = "slow_within_m",
+          .help = "Nearer to an obstacle than this beyond robot_radius_m the rover is slowed; 0 "
+                  "never slows it.",
+          .min = 0.0,
+          .max = 5.0},
+         slow_within_m);
+  v.real({.name = "slow_speed_m_s",
+          .help = "Speed at robot_radius_m from an obstacle where slow_within_m is set.",
+          .min = 0.02,
+          .max = 0.8},
+         slow_speed_m_s);
   v.real({.name = "trajectory_period_s",
           .help = "Time between trajectory points.",
           .min = 0.002,
@@ -130,7 +167,7 @@ void TimingConfig::describe(maps::SettingsVisitor& v) {
 void PlannerConfig::describe(maps::SettingsVisitor& v) {
   v.text({.name = "planner",
           .help = "Search method.",
-          .choices = {"astar", "thetastar", "rrtconnect", "rrtstar"},
+          .choices = {"astar", "thetastar", "rrtconnect", "rrtstar", "bitstar", "prmstar"},
           .advanced = false},
          planner);
   v.real({.name = "escape_max_distance_m",

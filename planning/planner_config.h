@@ -13,11 +13,18 @@ enum class PlannerKind {
   kThetaStar,   ///< Theta*: the shortest way, straight lines in any direction, no soft costs
   kRrtConnect,  ///< OMPL RRTConnect in the plane: any path, fast
   kRrtStar,     ///< OMPL RRT* in the plane: shorter the more iterations it gets
+  kBitStar,     ///< OMPL BIT* in the plane: batches of samples, best ways first
+  kPrmStar,     ///< OMPL PRM* in the plane: a roadmap, the shortest way on it
 };
 
-/// `astar`, `thetastar`, `rrtconnect`, `rrtstar`.
+/// `astar`, `thetastar`, `rrtconnect`, `rrtstar`, `bitstar`, `prmstar`.
 const char* to_string(PlannerKind kind);
 std::optional<PlannerKind> parse_planner_kind(const std::string& text);
+
+enum class SplineMode {
+  kSafe,       ///< keeps its clearance, its ends and its curvature
+  kReference,  ///< SciPy's smoothing spline through the cells, blind to obstacles
+};
 
 struct AStarConfig {
   int connectivity = 8;           ///< 4 or 8 neighbours
@@ -29,12 +36,16 @@ struct AStarConfig {
 struct OmplConfig {
   int rrtconnect_iterations = 200000;
   int rrtstar_iterations = 10000;
+  int bitstar_iterations = 20000;
+  int prmstar_iterations = 3000;
   double step_m = 2.0;  ///< longest edge of the tree
   double goal_bias = 0.05;
   void describe(maps::SettingsVisitor& v);
 };
 
 struct SplineConfig {
+  std::string mode = "safe";       ///< text form of SplineMode
+  double smoothing_cells2 = 2.0;   ///< reference mode; negative: SciPy's default
   bool smooth = true;              ///< false: drive the shortened polyline, stop-turn-go
   double max_curvature_1_m = 5.5;  ///< tighter bends become turns in place; there a wheel stands
   double control_spacing_m = 0.1;  ///< between control points before refinement
@@ -49,6 +60,8 @@ struct TimingConfig {
   double turn_first_threshold_rad = 0.5236;
   double max_wheel_speed_m_s = 0.8;  ///< at the rim; the motors' no-load speed is 1.0
   double escape_speed_m_s = 0.15;
+  double slow_within_m = 0.0;    ///< room beyond the radius below which speed falls; 0: never
+  double slow_speed_m_s = 0.15;  ///< where there is no room to spare
   double sample_period_s = 0.02;
   void describe(maps::SettingsVisitor& v);
 };

@@ -1,9 +1,12 @@
 #include "planning/sampling_planner.h"
 
 #include <ompl/base/objectives/PathLengthOptimizationObjective.h>
+#include <ompl/base/samplers/InformedStateSampler.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/base/terminationconditions/IterationTerminationCondition.h>
 #include <ompl/geometric/PathGeometric.h>
+#include <ompl/geometric/planners/informedtrees/BITstar.h>
+#include <ompl/geometric/planners/prm/PRMstar.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
 #include <ompl/geometric/planners/rrt/RRTstar.h>
 #include <ompl/util/Console.h>
@@ -109,6 +112,61 @@ class SeededRrtConnect final : public og::RRTConnect {
   }
 };
 
+/// PRM's own solve() builds its roadmap by the clock and beside a second thread; this one by
+/// samples.
+class SeededPrmStar final : public og::PRMstar {
+ public:
+  SeededPrmStar(const ob::SpaceInformationPtr& info, std::uint64_t seed) : og::PRMstar(info) {
+    rng_.setLocalSeed(static_cast<std::uint_fast32_t>(seed & 0x7FFFFFFFU) + 1U);
+  }
+  ob::PlannerStatus solve(const ob::PlannerTerminationCondition& limit) override {
+    checkValidity();
+    const auto start = addMilestone(si_->cloneState(pis_.nextStart()));
+    const auto goal = addMilestone(si_->cloneState(pis_.nextGoal()));
+    growRoadmap(limit);
+    if (!sameComponent(start, goal)) return ob::PlannerStatus::TIMEOUT;
+    pdef_->addSolutionPath(constructSolution(start, goal));
+    return ob::PlannerStatus::EXACT_SOLUTION;
+  }
+};
+
+/// Draws from the space's own, seeded sampler what may still shorten the path; OMPL's informed
+/// samplers draw from the generator that is global to the process.
+class SeededInformedSampler final : public ob::InformedSampler {
+ public:
+  SeededInformedSampler(const ob::ProblemDefinitionPtr& problem, unsigned calls)
+      : ob::InformedSampler(problem, calls), sampler_(space_->allocStateSampler()) {}
+
+  bool sampleUniform(ob::State* state, const ob::Cost& most) override {
+    for (unsigned i = 0; i < numIters_; ++i) {
+      sampler_->sampleUniform(state);
+      if (opt_->isCostBetterThan(heuristicSolnCost(state), most)) return true;
+    }
+    return false;
+  }
+  bool sampleUniform(ob::State* state, const ob::Cost& least, const ob::Cost& most) override {
+    for (unsigned i = 0; i < numIters_; ++i) {
+      if (!sampleUniform(state, most)) return false;
+      if (!opt_->isCostBetterThan(heuristicSolnCost(state), least)) return true;
+    }
+    return false;
+  }
+  bool hasInformedMeasure() const override { return false; }
+  double getInformedMeasure(const ob::Cost&) const override { return space_->getMeasure(); }
+
+ private:
+  ob::StateSamplerPtr sampler_;
+};
+
+class SeededPathLength final : public ob::PathLengthOptimizationObjective {
+ public:
+  using ob::PathLengthOptimizationObjective::PathLengthOptimizationObjective;
+  ob::InformedSamplerPtr allocInformedStateSampler(const ob::ProblemDefinitionPtr& problem,
+                                                   unsigned calls) const override {
+    return std::make_shared<SeededInformedSampler>(problem, calls);
+  }
+};
+
 ob::SpaceInformationPtr make_space(const FreeSpace& space, std::uint64_t seed) {
   const auto& g = space.geometry();
   auto plane = std::make_shared<Plane>(2);
@@ -131,6 +189,8 @@ ob::SpaceInformationPtr make_space(const FreeSpace& space, std::uint64_t seed) {
 
 ob::PlannerPtr make_planner(const ob::SpaceInformationPtr& info, PlannerKind kind,
                             const OmplConfig& config, std::uint64_t seed) {
+  if (kind == PlannerKind::kBitStar) return std::make_shared<og::BITstar>(info);
+  if (kind == PlannerKind::kPrmStar) return std::make_shared<SeededPrmStar>(info, seed);
   if (kind == PlannerKind::kRrtStar) {
     auto planner = std::make_shared<SeededRrtStar>(info, seed);
     planner->setRange(config.step_m);
@@ -140,6 +200,19 @@ ob::PlannerPtr make_planner(const ob::SpaceInformationPtr& info, PlannerKind kin
   auto planner = std::make_shared<SeededRrtConnect>(info, seed);
   planner->setRange(config.step_m);
   return planner;
+}
+
+int iterations_of(PlannerKind kind, const OmplConfig& config) {
+  switch (kind) {
+    case PlannerKind::kRrtStar:
+      return config.rrtstar_iterations;
+    case PlannerKind::kBitStar:
+      return config.bitstar_iterations;
+    case PlannerKind::kPrmStar:
+      return config.prmstar_iterations;
+    default:
+      return config.rrtconnect_iterations;
+  }
 }
 
 }  // namespace
@@ -157,12 +230,11 @@ SamplingResult sample_path(const FreeSpace& space, PlannerKind kind, const TPoin
   to[1] = goal.y;
   auto problem = std::make_shared<ob::ProblemDefinition>(info);
   problem->setStartAndGoalStates(from, to, 1e-9);
-  problem->setOptimizationObjective(std::make_shared<ob::PathLengthOptimizationObjective>(info));
+  problem->setOptimizationObjective(std::make_shared<SeededPathLength>(info));
   const ob::PlannerPtr planner = make_planner(info, kind, config, seed);
   planner->setProblemDefinition(problem);
   planner->setup();
-  ob::IterationTerminationCondition limit(static_cast<unsigned>(
-      kind == PlannerKind::kRrtStar ? config.rrtstar_iterations : config.rrtconnect_iterations));
+  ob::IterationTerminationCondition limit(static_cast<unsigned>(iterations_of(kind, config)));
   const ob::PlannerStatus status = planner->solve(limit);
   ob::PlannerData data(info);
   planner->getPlannerData(data);

@@ -28,6 +28,7 @@ struct Stretch {
   std::vector<TPoint2D> vertices;
   std::vector<char> pinned;  ///< per vertex
   std::optional<double> start_heading;
+  double start_curvature = 0.0;
   std::optional<double> goal_heading;
 };
 
@@ -37,7 +38,10 @@ Stretch part(const Stretch& whole, std::size_t first, std::size_t last) {
   Stretch out;
   out.vertices.assign(whole.vertices.begin() + from, whole.vertices.begin() + to);
   out.pinned.assign(whole.pinned.begin() + from, whole.pinned.begin() + to);
-  if (first == 0) out.start_heading = whole.start_heading;
+  if (first == 0) {
+    out.start_heading = whole.start_heading;
+    out.start_curvature = whole.start_curvature;
+  }
   if (last + 1 == whole.vertices.size()) out.goal_heading = whole.goal_heading;
   return out;
 }
@@ -124,7 +128,7 @@ class CurveFit {
     fit_.fixed.front() = fit_.fixed.back() = 1;
     const double reach = maps::distance(fit_.control[0], fit_.control[1]);
     const double reach_back = maps::distance(fit_.control[n - 1], fit_.control[n - 2]);
-    if (stretch.start_heading) fix(1, fit_.control.front(), *stretch.start_heading, reach);
+    if (stretch.start_heading) fix_start(*stretch.start_heading, stretch.start_curvature, reach);
     if (stretch.goal_heading) fix(n - 2, fit_.control.back(), *stretch.goal_heading, -reach_back);
   }
 
@@ -134,7 +138,7 @@ class CurveFit {
     for (int round = 0; round < kRepairRounds; ++round) {
       set_bending();
       solve(fit_);
-      const CubicBSpline curve = CubicBSpline::uniform(fit_.control);
+      const CubicBSpline curve = CubicBSpline::uniform(fit_.control, start_second_);
       const Mending mending = mend_spans(curve, std::exp2(-(round / 4)));
       if (mending == Mending::kNothingToDo) return curve;
       if (mending == Mending::kHopeless) break;
@@ -152,6 +156,16 @@ class CurveFit {
     fit_.fixed[index] = 1;
     fit_.control[index] = {end.x + reach * std::cos(heading_rad),
                            end.y + reach * std::sin(heading_rad)};
+  }
+
+  /// First derivative `reach` along the heading, second derivative across it: position, tangent and
+  /// curvature at the start are then those asked for.
+  void fix_start(double heading_rad, double curvature, double reach) {
+    const double bend = curvature * reach * reach;
+    start_second_ = {-bend * std::sin(heading_rad), bend * std::cos(heading_rad)};
+    TPoint2D& first = fit_.control.front();
+    first = {first.x - start_second_.x / 6.0, first.y - start_second_.y / 6.0};
+    fix(1, {first.x + 0.5 * start_second_.x, first.y + 0.5 * start_second_.y}, heading_rad, reach);
   }
 
   void set_bending() {
@@ -231,6 +245,7 @@ class CurveFit {
   double spacing_;
   Sites sites_;
   PenalizedFit fit_;
+  TPoint2D start_second_{0.0, 0.0};
   std::vector<double> levels_;    // halvings of the smoothing length, per control point
   std::vector<TPoint2D> judged_;  // control points
   std::vector<char> is_good_;     // per span
@@ -274,11 +289,12 @@ class Smoother {
     const auto differs = [along](const std::optional<double>& h) {
       return h && std::abs(maps::wrap_angle(*h - along)) > 1e-4;
     };
-    return differs(s.start_heading) || differs(s.goal_heading);
+    return differs(s.start_heading) || differs(s.goal_heading) || s.start_curvature != 0.0;
   }
 
   void add_without_headings(Stretch stretch) {
     stretch.start_heading.reset();
+    stretch.start_curvature = 0.0;
     stretch.goal_heading.reset();
     add(stretch);
   }
@@ -318,6 +334,7 @@ std::vector<PathPiece> smooth(const FreeSpace& space, const SmoothingProblem& pr
   whole.pinned.assign(whole.vertices.size(), 0);
   for (const std::size_t i : problem.pinned) whole.pinned[i] = 1;
   whole.start_heading = problem.start_heading_rad;
+  if (whole.start_heading) whole.start_curvature = problem.start_curvature_1_m;
   whole.goal_heading = problem.goal_heading_rad;
 
   Smoother smoother(space, config);
@@ -337,10 +354,13 @@ std::vector<double> sample_parameters(const CubicBSpline& curve, double spacing_
   for (std::size_t k = 3; k + 4 < knots.size(); ++k) {
     const double width = knots[k + 1] - knots[k];
     if (width <= 0.0) continue;
-    // Speed is at most that of the control polygon's legs around the span.
+    // The derivative is a mix of these three; with uniform knots, of the control polygon's legs.
     const auto& c = curve.control_points();
     double leg = 0.0;
-    for (std::size_t i = k - 3; i < k; ++i) leg = std::max(leg, maps::distance(c[i], c[i + 1]));
+    for (std::size_t i = k - 3; i < k; ++i) {
+      const double share = 3.0 * width / (knots[i + 4] - knots[i + 1]);
+      leg = std::max(leg, share * maps::distance(c[i], c[i + 1]));
+    }
     const int n = std::max(1, static_cast<int>(std::ceil(leg / spacing_m)));
     for (int i = 1; i <= n; ++i) out.push_back(knots[k] + width * i / n);
   }

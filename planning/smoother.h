@@ -24,6 +24,8 @@ struct SmoothingProblem {
   std::vector<std::size_t> pinned;
   /// Directions the first and last curve should have at their ends, where there is room for it.
   std::optional<double> start_heading_rad;
+  /// With a start heading: the curvature there, for a rover that is already under way.
+  double start_curvature_1_m = 0.0;
   std::optional<double> goal_heading_rad;
 };
 

@@ -3,84 +3,52 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planning/speed_profile.h"
+
 namespace rovigo::planning {
 
 namespace {
 
-constexpr double kProfileSpacingM = 0.01;
-// Of the yaw acceleration, for the change of curvature and for the change of speed each; a little
-// is left for what lies between the profile's points.
-constexpr double kYawShare = 0.48;
 constexpr double kSmallestTurnRad = 1e-3;  // below it a turn in place is left to the tracker
 
-/// Speed profile over points along one curve.
-struct Profile {
-  std::vector<double> parameter;
-  std::vector<double> distance_m;  ///< along the curve
-  std::vector<double> speed_m_s;
+/// A turn in place as fast as the limits allow, from a turn rate to rest: speed up, hold, slow
+/// down. Angles and rates are counted in its direction.
+struct Turn {
+  double sign = 1.0;
+  double rate = 0.0;  ///< at its start; negative when it first has to stop turning the other way
+  double peak = 0.0;
+  double ramp = 0.0;  ///< seconds until the peak
+  double hold = 0.0;
+  double alpha = 1.0;
+
+  double duration() const { return ramp + hold + peak / alpha; }
+  double rate_at(double t) const {
+    if (t < ramp) return rate + alpha * t;
+    return std::max(0.0, peak - alpha * std::max(0.0, t - ramp - hold));
+  }
+  double angle_at(double t) const {
+    const double up = std::min(t, ramp);
+    const double flat = std::clamp(t - ramp, 0.0, hold);
+    const double down = std::max(0.0, t - ramp - hold);
+    return rate * up + 0.5 * alpha * up * up + peak * flat + peak * down -
+           0.5 * alpha * down * down;
+  }
 };
 
-/// Highest speed at a point of the curve, whatever comes before or after.
-double speed_limit(double curvature, double curvature_rate, bool slow, const MotionLimits& limits,
-                   const TimingConfig& config) {
-  const double bend = std::abs(curvature);
-  double v = slow ? std::min(config.escape_speed_m_s, limits.speed_m_s) : limits.speed_m_s;
-  v = std::min(v, limits.wheel_speed_m_s / (1.0 + 0.5 * bend * limits.track_width_m));
-  if (bend > 1e-9) {
-    v = std::min(v, limits.yaw_rate_rad_s / bend);
-    v = std::min(v, std::sqrt(limits.lateral_acceleration_m_s2 / bend));
-  }
-  const double rate = std::abs(curvature_rate);
-  if (rate > 1e-9) v = std::min(v, std::sqrt(kYawShare * limits.yaw_acceleration_rad_s2 / rate));
-  return v;
-}
-
-double acceleration_limit(double curvature, const MotionLimits& limits) {
-  const double bend = std::abs(curvature);
-  if (bend < 1e-9) return limits.acceleration_m_s2;
-  return std::min(limits.acceleration_m_s2, kYawShare * limits.yaw_acceleration_rad_s2 / bend);
-}
-
-Profile speed_profile(const PathPiece& piece, const MotionLimits& limits,
-                      const TimingConfig& config) {
-  Profile p;
-  p.parameter = sample_parameters(piece.curve, kProfileSpacingM);
-  if (p.parameter.size() < 3) {
-    p.parameter.insert(p.parameter.begin() + 1, 0.5 * (p.parameter.front() + p.parameter.back()));
-  }
-  const std::size_t n = p.parameter.size();
-  std::vector<double> acceleration(n);
-  std::vector<double> curvature(n);
-  std::vector<double> curvature_rate(n);
-  p.distance_m.assign(n, 0.0);
-  p.speed_m_s.assign(n, 0.0);
-  TPoint2D last;
-  for (std::size_t i = 0; i < n; ++i) {
-    const CurvePoint at = piece.curve.at(p.parameter[i]);
-    curvature[i] = at.curvature();
-    curvature_rate[i] = at.curvature_rate();
-    acceleration[i] = acceleration_limit(curvature[i], limits);
-    if (i > 0) p.distance_m[i] = p.distance_m[i - 1] + maps::distance(last, at.position);
-    last = at.position;
-  }
-  // The curvature's rate jumps at knots: the larger of both sides counts.
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    const double rate = std::max({std::abs(curvature_rate[i - 1]), std::abs(curvature_rate[i]),
-                                  std::abs(curvature_rate[i + 1])});
-    p.speed_m_s[i] = speed_limit(curvature[i], rate, piece.slow, limits, config);
-  }
-  const auto reachable = [&](std::size_t from, std::size_t to) {
-    const double a = std::min(acceleration[from], acceleration[to]);
-    const double ds = std::abs(p.distance_m[to] - p.distance_m[from]);
-    return std::sqrt(p.speed_m_s[from] * p.speed_m_s[from] + 2.0 * a * ds);
-  };
-  for (std::size_t i = 1; i < n; ++i) {
-    p.speed_m_s[i] = std::min(p.speed_m_s[i], reachable(i - 1, i));
-  }
-  for (std::size_t i = n - 1; i-- > 0;) {
-    p.speed_m_s[i] = std::min(p.speed_m_s[i], reachable(i + 1, i));
-  }
-  return p;
+Turn fastest_turn(double angle_rad, double rate, const MotionLimits& limits) {
+  const double alpha = limits.yaw_acceleration_rad_s2;
+  // The short way round from where the rover can be at rest.
+  const double rest = 0.5 * rate * std::abs(rate) / alpha;
+  const double beyond = maps::wrap_angle(angle_rad - rest);
+  Turn turn{.sign = beyond < 0.0 ? -1.0 : 1.0, .alpha = alpha};
+  turn.rate = turn.sign * rate;
+  const double angle = turn.sign * (rest + beyond);
+  const double highest = std::max(limits.yaw_rate_rad_s, turn.rate);
+  turn.peak = std::min(highest, std::sqrt(std::max(0.0, alpha * angle + 0.5 * rate * rate)));
+  turn.ramp = std::max(0.0, (turn.peak - turn.rate) / alpha);
+  const double ramps = (turn.peak * turn.peak - 0.5 * rate * rate) / alpha;
+  turn.hold = turn.peak > 0.0 ? std::max(0.0, (angle - ramps) / turn.peak) : 0.0;
+  return turn;
 }
 
 class Timer {
@@ -88,40 +56,40 @@ class Timer {
   Timer(const MotionLimits& limits, const TimingConfig& config)
       : limits_(limits), config_(config) {}
 
-  void begin(const TPose2D& pose) { push({.time_s = 0.0, .pose = pose}); }
+  void begin(const TPose2D& pose, double speed, double yaw_rate) {
+    push({.time_s = 0.0,
+          .pose = pose,
+          .speed_m_s = speed,
+          .yaw_rate_rad_s = yaw_rate,
+          .curvature_1_m = speed > 0.0 ? yaw_rate / speed : 0.0});
+  }
 
-  /// Rests between pieces need no time of their own; the turn starts and ends at rest.
+  /// Ends at rest; begins with the last point's turn rate.
   void turn_to(double heading_rad) {
     const TrajectoryPoint from = trajectory_.points.back();
-    const double turn = maps::wrap_angle(heading_rad - from.pose.phi);
-    if (std::abs(turn) < kSmallestTurnRad) return;
-    const double angle = std::abs(turn);
-    const double alpha = limits_.yaw_acceleration_rad_s2;
-    const double peak = std::min(limits_.yaw_rate_rad_s, std::sqrt(angle * alpha));
-    const double ramp = peak / alpha;
-    const double duration = angle / peak + ramp;
-    const int n = steps(duration);
+    const double angle = maps::wrap_angle(heading_rad - from.pose.phi);
+    if (std::abs(angle) < kSmallestTurnRad && from.yaw_rate_rad_s == 0.0) return;
+    const Turn turn = fastest_turn(angle, from.yaw_rate_rad_s, limits_);
+    const int n = steps(turn.duration());
     for (int i = 1; i <= n; ++i) {
-      const double t = duration * i / n;
-      const double up = std::min(t, ramp);
-      const double down = std::max(0.0, t - (duration - ramp));
-      const double flat = t - up - down;
-      const double done =
-          0.5 * alpha * up * up + peak * flat + peak * down - 0.5 * alpha * down * down;
-      const double rate = alpha * up - alpha * down;
+      const double t = turn.duration() * i / n;
       TrajectoryPoint p = from;
       p.time_s = from.time_s + t;
-      p.pose.phi = maps::wrap_angle(from.pose.phi + std::copysign(done, turn));
-      p.yaw_rate_rad_s = i == n ? 0.0 : std::copysign(rate, turn);
+      p.pose.phi =
+          maps::wrap_angle(i == n ? heading_rad : from.pose.phi + turn.sign * turn.angle_at(t));
+      p.yaw_rate_rad_s = i == n ? 0.0 : turn.sign * turn.rate_at(t);
       p.speed_m_s = 0.0;
       p.curvature_1_m = 0.0;
-      if (i == n) p.pose.phi = maps::wrap_angle(heading_rad);
       push(p);
     }
   }
 
-  void drive(const PathPiece& piece) {
-    const Profile profile = speed_profile(piece, limits_, config_);
+  /// False when the last point's speed is too high for the piece.
+  bool drive(const PathPiece& piece, const std::function<double(const TPoint2D&)>& room_m) {
+    const auto planned =
+        speed_profile(piece, trajectory_.points.back().speed_m_s, room_m, limits_, config_);
+    if (!planned) return false;
+    const SpeedProfile& profile = *planned;
     const double start_time = trajectory_.points.back().time_s;
     const std::size_t n = profile.parameter.size();
     std::vector<double> time(n, 0.0);
@@ -141,6 +109,7 @@ class Timer {
       if (k == count) p.speed_m_s = p.yaw_rate_rad_s = 0.0;
       push(p);
     }
+    return true;
   }
 
   Trajectory take() { return std::move(trajectory_); }
@@ -150,7 +119,7 @@ class Timer {
     return std::max(1, static_cast<int>(std::ceil(duration / config_.sample_period_s)));
   }
 
-  static TrajectoryPoint state_at(const PathPiece& piece, const Profile& profile,
+  static TrajectoryPoint state_at(const PathPiece& piece, const SpeedProfile& profile,
                                   const std::vector<double>& time, std::size_t segment, double t) {
     const double v0 = profile.speed_m_s[segment - 1];
     const double v1 = profile.speed_m_s[segment];
@@ -203,10 +172,14 @@ Trajectory time_path(const TimingProblem& problem, const MotionLimits& limits,
   const double along = pieces.empty()
                            ? problem.goal_heading_rad.value_or(0.0)
                            : pieces.front().curve.at(pieces.front().curve.begin()).heading();
-  timer.begin({start.x, start.y, problem.start_heading_rad.value_or(along)});
+  const bool moves = problem.start_speed_m_s > 0.0;
+  timer.begin({start.x, start.y, problem.start_heading_rad.value_or(along)},
+              problem.start_speed_m_s, problem.start_yaw_rate_rad_s);
   for (const PathPiece& piece : pieces) {
-    timer.turn_to(piece.curve.at(piece.curve.begin()).heading());
-    timer.drive(piece);
+    if (!moves || &piece != &pieces.front()) {
+      timer.turn_to(piece.curve.at(piece.curve.begin()).heading());
+    }
+    if (!timer.drive(piece, problem.room_m)) return {};
   }
   if (problem.goal_heading_rad) timer.turn_to(*problem.goal_heading_rad);
   return timer.take();

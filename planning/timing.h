@@ -1,6 +1,7 @@
 #pragma once
 // When the rover is where: speeds along curves under its limits, and turns in place between them.
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -28,12 +29,17 @@ struct TimingProblem {
   TPoint2D at;                              ///< position when there are no pieces
   std::optional<double> start_heading_rad;  ///< turns in place to the first piece if it differs
   std::optional<double> goal_heading_rad;   ///< turns in place after the last piece
+  /// Of a rover under way: along the first piece, which then must begin with its heading; or, at
+  /// rest, turning in place at this rate. Zero for a rover at rest.
+  double start_speed_m_s = 0.0;
+  double start_yaw_rate_rad_s = 0.0;
+  /// Metres to spare beyond the radius, for TimingConfig::slow_within_m; may be empty.
+  std::function<double(const TPoint2D&)> room_m = {};
 };
 
-/// Time-optimal within each curve for limits on speed, turn rate, wheel speed and lateral
-/// acceleration; the yaw acceleration is shared equally between the change of curvature and the
-/// change of speed, which makes the usual forward-backward pass exact (Verscheure et al. 2009
-/// discuss the full problem). Every piece begins and ends at rest.
+/// Time-optimal within each curve (see speed_profile.h) and each turn in place. Every piece ends at
+/// rest and begins so, but for the start speed of the first. Empty when that speed is too high for
+/// the curve: no braking keeps its limits.
 Trajectory time_path(const TimingProblem& problem, const MotionLimits& limits,
                      const TimingConfig& config);
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
+#include <random>
 
 namespace rovigo::planning {
 
@@ -131,6 +133,45 @@ void improve(const Matrix& cost, Order& order) {
   }
 }
 
+/// Simulated annealing (Kirkpatrick et al. 1983) over reversals and moves of single stops, cooling
+/// geometrically; returns the best order met. Same arguments, same answer.
+Order anneal(const Matrix& cost, const Order& first) {
+  constexpr int kStepsPerStop = 1500;
+  constexpr double kColdest = 1e-3;  // of the start temperature
+  std::mt19937_64 random(first.size());
+  const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
+  Order order = first;
+  Order best = first;
+  double now = tour_cost(cost, order);
+  double least = now;
+  if (!(now < kInfinity)) return best;  // nothing to weigh against
+  const int steps = kStepsPerStop * static_cast<int>(order.size());
+  const double hottest = 0.3 * now / static_cast<double>(order.size() + 1);
+  for (int step = 0; step < steps; ++step) {
+    const double temperature = hottest * std::pow(kColdest, static_cast<double>(step) / steps);
+    Order tried = order;
+    const std::size_t i = below(order.size());
+    const std::size_t j = below(order.size());
+    const auto low = tried.begin() + static_cast<std::ptrdiff_t>(std::min(i, j));
+    const auto high = tried.begin() + static_cast<std::ptrdiff_t>(std::max(i, j)) + 1;
+    if (step % 2 == 0) {
+      std::reverse(low, high);
+    } else {
+      i < j ? std::rotate(low, low + 1, high) : std::rotate(low, high - 1, high);
+    }
+    const double total = tour_cost(cost, tried);
+    const double chance = static_cast<double>(random() >> 11) * 0x1p-53;
+    if (total > now && !(chance < std::exp((now - total) / temperature))) continue;
+    order = std::move(tried);
+    now = total;
+    if (now < least) {
+      least = now;
+      best = order;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 double tour_cost(const Matrix& cost, const Order& order) {
@@ -155,7 +196,10 @@ Order shortest_order(const Matrix& cost) {
   Order inserted = cheapest_insertion(cost);
   improve(cost, near);
   improve(cost, inserted);
-  return tour_cost(cost, near) <= tour_cost(cost, inserted) ? near : inserted;
+  const Order& better = tour_cost(cost, near) <= tour_cost(cost, inserted) ? near : inserted;
+  Order annealed = anneal(cost, better);
+  improve(cost, annealed);
+  return tour_cost(cost, annealed) < tour_cost(cost, better) ? annealed : better;
 }
 
 }  // namespace rovigo::planning

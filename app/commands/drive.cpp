@@ -131,6 +131,14 @@ int run_drive(const DriveOptions& options) {
     console.result(plan_json(plan), plan_message(plan.result), plan_rows(plan));
     return kDidNotSucceed;
   }
+  if (plan.result.unsafe_samples > 0) {
+    // A reference spline may cut through a wall: it is there to be looked at.
+    nlohmann::ordered_json refusal = plan_json(plan);
+    refusal["status"] = "unsafe_plan";
+    refusal["code"] = planning::refusal_code(planning::PlanStatus::kNoPath);
+    console.result(refusal, "not driven: " + plan_message(plan.result), plan_rows(plan));
+    return kDidNotSucceed;
+  }
   console.say(plan_message(plan.result));
 
   const Ground ground = open_ground(options, map);

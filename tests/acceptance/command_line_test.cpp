@@ -91,6 +91,31 @@ TEST(CommandLine, WithJsonABadInputIsOneObjectOnStdout) {
   EXPECT_THAT(object.at("message").get<std::string>(), HasSubstr("/nowhere.rovigo"));
 }
 
+TEST(CommandLine, AReferenceSplineThatCutsACornerIsPlannedWithAWarningAndNotDriven) {
+  const TemporaryFolder folder;
+  std::string map = "type octile\nheight 20\nwidth 20\nmap\n";
+  for (int row = 0; row < 20; ++row) {  // a passage one cell wide round a corner
+    for (int x = 0; x < 20; ++x) {
+      const bool open = (row == 10 && x >= 1 && x <= 15) || (x == 15 && row >= 1 && row <= 10);
+      map += open ? '.' : '@';
+    }
+    map += '\n';
+  }
+  write_text(folder / "corner.map", map);
+  const auto with = [&](const std::string& command, const std::string& mode) {
+    return run_rovigo({command, folder / "corner.map", "--start", "1.5,9.5", "--goal", "15.5,18.5",
+                       "--set", "planning.spline_mode=" + mode, "--set",
+                       "planning.spline_smoothing_cells2=6", "--json"});
+  };
+  const ProcessResult planned = with("plan", "reference");
+  EXPECT_EQ(planned.exit_code, 0);
+  EXPECT_GT(nlohmann::json::parse(planned.out).at("unsafe_samples"), 0);
+  const ProcessResult driven = with("drive", "reference");
+  EXPECT_EQ(driven.exit_code, 1);
+  EXPECT_EQ(nlohmann::json::parse(driven.out).at("status"), "unsafe_plan");
+  EXPECT_EQ(nlohmann::json::parse(with("plan", "safe").out).at("unsafe_samples"), 0);
+}
+
 TEST(CommandLine, MissingEmptyTruncatedAndForeignFilesAreRefusedByEveryCommandThatReads) {
   const TemporaryFolder folder;
   write_text(folder / "empty.rovigo", "");

@@ -67,6 +67,8 @@ TEST_P(RandomWorlds, EveryPlanPassesTheChecker) {
   PlannerConfig config;
   config.planner = style.planner;
   config.ompl.rrtstar_iterations = 500;
+  config.ompl.bitstar_iterations = 2000;
+  config.ompl.prmstar_iterations = 300;
   int planned = 0;
   for (int i = 0; i < 25; ++i) {
     const OccupancyGrid grid = random_world(random, style);
@@ -108,7 +110,9 @@ INSTANTIATE_TEST_SUITE_P(Styles, RandomWorlds,
                                          Style{"PointRobot", 0.10, 0.0, 25, 40, 0.05},
                                          Style{"ThetaStar", 0.05, 0.30, 8, 8, 0.0, "thetastar"},
                                          Style{"RrtConnect", 0.05, 0.30, 8, 8, 0.0, "rrtconnect"},
-                                         Style{"RrtStar", 0.05, 0.30, 8, 8, 0.0, "rrtstar"}),
+                                         Style{"RrtStar", 0.05, 0.30, 8, 8, 0.0, "rrtstar"},
+                                         Style{"BitStar", 0.05, 0.30, 8, 8, 0.0, "bitstar"},
+                                         Style{"PrmStar", 0.05, 0.30, 8, 8, 0.0, "prmstar"}),
                          [](const auto& param) { return std::string(param.param.name); });
 
 TEST(SplinePieces, AreTwiceContinuouslyDifferentiableInRandomWorlds) {

@@ -279,7 +279,8 @@ TEST_P(SamplingPlanners, FindASoundWayAndTheSameOneForTheSameSeed) {
   EXPECT_EQ(planner.plan(from_to({1, 1}, {6.5, 1.5})).status, PlanStatus::kNoPath);
 }
 
-INSTANTIATE_TEST_SUITE_P(Ompl, SamplingPlanners, testing::Values("rrtconnect", "rrtstar"));
+INSTANTIATE_TEST_SUITE_P(Ompl, SamplingPlanners,
+                         testing::Values("rrtconnect", "rrtstar", "bitstar", "prmstar"));
 
 TEST(Planner, ASamplingPlannerThatRunsOutOfIterationsSaysSo) {
   PlannerConfig config;
@@ -327,6 +328,43 @@ TEST(Planner, AnEmptyMapRefusesInsteadOfCrashing) {
             PlanStatus::kStartOutsideMap);
 }
 
+TEST(Planner, AReferenceSplineSaysWhenItCutsThroughAnObstacle) {
+  const auto grid = two_rooms();
+  PlannerConfig config;
+  config.spline.mode = "reference";
+  config.spline.smoothing_cells2 = 2000.0;
+  const auto cutting = planner_for(grid, config).plan(from_to({1, 1}, {5, 1}));
+  ASSERT_EQ(cutting.status, PlanStatus::kOk);
+  CheckOptions options;
+  options.limits = limits_of(maps::RobotModel(), config.timing);
+  const auto report = check(cutting.trajectory, grid, options);
+  EXPECT_EQ(cutting.unsafe_samples > 0, report.unsafe_samples > 0);
+  EXPECT_GT(cutting.unsafe_samples, 0U) << "such a smoothing no longer cuts this corner";
+  EXPECT_THAT(cutting.message, HasSubstr("not safe to drive"));
+
+  const auto open = planner_for(grid, config).plan(from_to({1, 1}, {1, 2}));
+  ASSERT_EQ(open.status, PlanStatus::kOk);
+  EXPECT_EQ(open.unsafe_samples, 0U);
+  EXPECT_TRUE(open.message.empty()) << open.message;
+}
+
+TEST(Planner, AReferenceSplineWithoutSmoothingPassesThroughEveryCell) {
+  PlannerConfig config;
+  config.spline.mode = "reference";
+  config.spline.smoothing_cells2 = 0.0;
+  for (const TPoint2D goal : {TPoint2D{5, 1}, TPoint2D{1.02, 1}, TPoint2D{1.06, 1.04}}) {
+    const auto result = planner_for(two_rooms(), config).plan(from_to({1, 1}, goal));
+    ASSERT_EQ(result.status, PlanStatus::kOk);
+    for (const TPoint2D& cell : result.grid_path.points) {
+      double nearest = 1.0;
+      for (const auto& p : result.trajectory.points) {
+        nearest = std::min(nearest, maps::distance(maps::position_of(p.pose), cell));
+      }
+      EXPECT_LT(nearest, 0.005);
+    }
+  }
+}
+
 TEST(PlannerConfig, BadSettingsAreNamed) {
   PlannerConfig config;
   config.astar.connectivity = 5;
@@ -345,7 +383,7 @@ TEST(PlannerConfig, BadSettingsAreNamed) {
 
 TEST(PlannerConfig, KindsHaveNamesThatParseBack) {
   for (const auto kind : {PlannerKind::kAStar, PlannerKind::kThetaStar, PlannerKind::kRrtConnect,
-                          PlannerKind::kRrtStar}) {
+                          PlannerKind::kRrtStar, PlannerKind::kBitStar, PlannerKind::kPrmStar}) {
     EXPECT_EQ(parse_planner_kind(to_string(kind)), kind);
   }
   EXPECT_FALSE(parse_planner_kind("theta").has_value());
