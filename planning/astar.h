@@ -18,8 +18,8 @@ struct SearchWeights {
 struct GridSearchResult {
   bool found = false;
   std::vector<maps::Cell> cells = {};  ///< from start to goal, both included; empty when not found
-  double cost_m = 0.0;            ///< length weighted by soft costs, metres
-  double length_m = 0.0;          ///< of the polyline through the cell centres, metres
+  double cost_m = 0.0;                 ///< length weighted by soft costs, metres
+  double length_m = 0.0;               ///< of the polyline through the cell centres, metres
   std::size_t expanded_cells = 0;
 };
 
@@ -51,15 +51,28 @@ class GridSearch {
     std::uint32_t cell_and_move;  ///< the move that led to the cell in the top bits
     std::uint32_t cost;
   };
+  struct WeightedEntry {
+    std::uint32_t total;  ///< cost plus weighted heuristic
+    std::uint32_t cost;
+    std::uint32_t cell;
+    /// The heap's top is the greatest: the cheapest, among equals the one nearest to the goal.
+    bool operator<(const WeightedEntry& other) const {
+      return total != other.total ? total > other.total : cost < other.cost;
+    }
+  };
   struct Query;
 
   void prepare(const SearchGrid& grid);
   void forget();
   template <bool soft>
   bool run(Query& query);
+  template <bool soft>
+  bool run_weighted(Query& query);
   std::vector<std::uint32_t> cost_to_come_;  ///< kUnreached except where a query has been
   std::vector<std::uint32_t> touched_;       ///< cells to clear before the next query
   std::vector<std::vector<Entry>> buckets_;
+  std::vector<WeightedEntry> heap_;
+  std::vector<bool> expanded_;
 };
 
 }  // namespace rovigo::planning

@@ -13,6 +13,7 @@ inline constexpr std::uint32_t kUnreached = 0xFFFFFFFFU;
 struct Descent {
   std::vector<maps::Cell> cells;  ///< from where it began to where the cost is 0
   double length_m = 0.0;          ///< of the polyline through the cell centres
+  std::uint32_t cost = 0;         ///< of the steps taken: the cost at `from`, or less
 };
 
 /// Costs of a search fall strictly towards where it began, so the way back needs no stored parents.
@@ -45,6 +46,7 @@ Descent descend(const SearchGrid& grid, const std::vector<std::uint32_t>& costs,
       }
     }
     last_move = best_move;
+    out.cost += best - costs[static_cast<std::size_t>(static_cast<int>(cell) + offsets[best_move])];
     if (best_move >= kStraightMoves) ++diagonal_steps;
     cell = static_cast<std::uint32_t>(static_cast<int>(cell) + offsets[best_move]);
     at = {at.x + kMoves[best_move].dx, at.y + kMoves[best_move].dy};

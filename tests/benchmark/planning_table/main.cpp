@@ -223,10 +223,15 @@ void whole_plans(const Map& map, const maps::OccupancyGrid& grid, double soft_co
 
 }  // namespace rovigo::benchmarks
 
-int main() {
+/// `planning_table [WORD...]`: maps whose name holds one of the words; all without.
+int main(int argc, char** argv) {
   using namespace rovigo::benchmarks;  // NOLINT
   print_head();
   for (const Map& map : kMaps) {
+    const auto names_it = [&](const char* word) {
+      return map.name.find(word) != std::string::npos;
+    };
+    if (argc > 1 && std::none_of(argv + 1, argv + argc, names_it)) continue;
     const auto grid = grid_of(map);
     if (!grid) continue;
     raw_searches(map, *grid);
