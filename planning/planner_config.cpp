@@ -44,7 +44,8 @@ void AStarConfig::describe(maps::SettingsVisitor& v) {
           .advanced = false},
          soft_cost_weight);
   v.real({.name = "heuristic_weight",
-          .help = "Above 1 the search is faster and its cost at most this factor from the best.",
+          .help = "Above 1 fewer cells are searched, and the cost is at most this factor from the "
+                  "best; with soft costs that need not be faster.",
           .min = 1.0,
           .max = 10.0},
          heuristic_weight);

@@ -21,11 +21,6 @@ enum class PlannerKind {
 const char* to_string(PlannerKind kind);
 std::optional<PlannerKind> parse_planner_kind(const std::string& text);
 
-enum class SplineMode {
-  kSafe,       ///< keeps its clearance, its ends and its curvature
-  kReference,  ///< SciPy's smoothing spline through the cells, blind to obstacles
-};
-
 struct AStarConfig {
   int connectivity = 8;           ///< 4 or 8 neighbours
   double soft_cost_weight = 3.0;  ///< a metre at the highest soft cost counts as 1 + this metres
@@ -44,7 +39,7 @@ struct OmplConfig {
 };
 
 struct SplineConfig {
-  std::string mode = "safe";       ///< text form of SplineMode
+  std::string mode = "safe";       ///< safe (keeps its clearance) or reference (SciPy's, blind)
   double smoothing_cells2 = 2.0;   ///< reference mode; negative: SciPy's default
   bool smooth = true;              ///< false: drive the shortened polyline, stop-turn-go
   double max_curvature_1_m = 5.5;  ///< tighter bends become turns in place; there a wheel stands

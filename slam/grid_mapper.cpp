@@ -155,8 +155,9 @@ std::int8_t decide(const CellSums& cell, CellBands& bands) {
   const int enough = cell.doubted ? kOccupiedAmidMotionSteps : kOccupiedSteps;
   for (std::size_t b = 0; b < sums.size(); ++b) {
     if (sums[b] >= enough) bands.occupied |= static_cast<std::uint16_t>(1U << b);
-    if (sums[b] <= kFreeSteps && !hides_a_top(sums, b))
+    if (sums[b] <= kFreeSteps && !hides_a_top(sums, b)) {
       bands.free |= static_cast<std::uint16_t>(1U << b);
+    }
   }
   // What is decided lies beyond map_server's thresholds (0.65 and 0.196), however little evidence
   // decided it.

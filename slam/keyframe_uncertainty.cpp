@@ -7,8 +7,7 @@ namespace rovigo::slam {
 namespace {
 
 // What one step from keyframe to keyframe adds: at rest, by its length and by its turn. Chosen by
-// NEES on recorded drives (./run bench slam prints it), so that turns and mirroring floors, where
-// it is hardest to be honest, stay below 9.
+// NEES on recorded drives (./run bench slam prints it); turns and mirroring floors ask for most.
 constexpr double kStepM = 0.0007, kStepMPerRootM = 0.003;
 constexpr double kStepRad = 0.0005, kStepRadPerRootRad = 0.001;
 constexpr double kLoopM = 0.01, kLoopRad = 0.004;  // between the views of one place

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/support/scipy_spline.h"
+
 namespace rovigo::planning {
 namespace {
 
@@ -63,19 +65,7 @@ TEST(CubicBSpline, PointsOnACircleGiveItsCurvature) {
 }
 
 TEST(CubicBSpline, EvaluatesSciPysSplineWithUnevenKnots) {
-  // Knots, coefficients and values of splprep(s = 4) in data/golden/bspline_smoothing.txt.
-  const std::vector<double> knots{
-      0.0,      0.0,      0.0,     0.0,      0.052681, 0.122818, 0.15879,  0.184227, 0.25,
-      0.302681, 0.372818, 0.40879, 0.434227, 0.5,      0.552681, 0.622818, 0.65879,  0.684227,
-      0.75,     0.872818, 0.90879, 0.934227, 1.0,      1.0,      1.0,      1.0};
-  const std::vector<double> x{0.008354,  1.558811,  5.979807,  8.918307,  9.43166,   13.34091,
-                              16.47127,  22.778113, 26.012859, 26.407997, 30.3444,   33.473535,
-                              39.775933, 43.009538, 43.43115,  47.238792, 52.387994, 60.194995,
-                              60.349398, 64.026115, 67.161455, 67.895012};
-  const std::vector<double> y{0.053217,  -0.123936, -0.389737, 3.911125,  8.114164,  10.094015,
-                              5.533326,  5.768308,  9.864802,  14.120899, 16.094889, 11.531361,
-                              11.76965,  15.865281, 20.115825, 22.117178, 15.229989, 20.130728,
-                              26.123337, 27.965539, 25.668468, 23.946213};
+  const auto& [knots, x, y] = test::scipy_spline_for_four();
   std::vector<TPoint2D> control;
   for (std::size_t i = 0; i < x.size(); ++i) control.push_back({x[i], y[i]});
   const CubicBSpline spline(knots, control);
