@@ -148,15 +148,18 @@ class DrivenPath {
     return turn_is_free(points_.size() - 1);
   }
 
-  /// Leaves out points as long as one is found that need not be visited.
+  /// Leaves out points as long as one is found that need not be visited. That also mends turns that
+  /// are free backwards only.
   void shorten() {
     for (bool again = true; again;) {
       again = false;
       for (std::size_t i = 1; i + 1 < points_.size();) {
         const TPoint2D left_out = points_[i];
+        const int blocked = blocked_turns(i - 1, i + 1);
         points_.erase(points_.begin() + static_cast<std::ptrdiff_t>(i));
-        if (problem_.space.drive_is_free(points_[i - 1], points_[i]) && turn_is_free(i - 1) &&
-            turn_is_free(i)) {
+        const bool drives = problem_.space.drive_is_free(points_[i - 1], points_[i]);
+        const int still_blocked = drives ? blocked_turns(i - 1, i) : 0;
+        if (drives && (still_blocked == 0 || still_blocked < blocked)) {
           again = true;
         } else {
           points_.insert(points_.begin() + static_cast<std::ptrdiff_t>(i), left_out);
@@ -169,6 +172,11 @@ class DrivenPath {
   Path take() { return {std::move(points_)}; }
 
  private:
+  int blocked_turns(std::size_t first, std::size_t last) const {
+    int count = 0;
+    for (std::size_t i = first; i <= last; ++i) count += turn_is_free(i) ? 0 : 1;
+    return count;
+  }
   /// On the spot at point `i`, from the leg before to the leg after.
   bool turn_is_free(std::size_t i) const {
     const bool is_last = i + 1 == points_.size();
@@ -206,8 +214,8 @@ FootprintResult plan_with_footprint(const FootprintProblem& problem, PlannerKind
   }
   if (points.empty()) return result;
   DrivenPath driven(problem, std::move(points));
-  if (!driven.is_free()) return result;
   driven.shorten();
+  if (!driven.is_free()) return result;
   result.found = true;
   result.path = driven.take();
   return result;
