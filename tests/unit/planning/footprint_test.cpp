@@ -45,6 +45,9 @@ PlannerConfig config_for(const std::string& planner) {
   PlannerConfig config;
   config.planner = planner;
   config.footprint = "rectangle";
+  config.ompl.rrtstar_iterations = 2000;
+  config.ompl.bitstar_iterations = 4000;
+  config.ompl.prmstar_iterations = 1000;
   return config;
 }
 
