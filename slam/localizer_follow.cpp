@@ -85,9 +85,10 @@ void Localizer::Impl::miss(const SeenView& view, const std::vector<int>& local_l
   ++misses;
   doubt = view.shows_plenty();
   // In an unbroken view nobody has carried the rover: the map is old, or never saw this side.
+  // Few features are no match, and no contradiction either; walls where there should be none are.
   const bool contradicted =
-      (broken || !was_sure) && doubt &&
-      (checker.map_knows_view(pose) ||
+      (broken || !was_sure) &&
+      ((doubt && checker.map_knows_view(pose)) ||
        checker.check(view, local_landmarks, pose, SeenView::kPlenty).contradicts);
   if (contradicted && !contradicted_since_s) contradicted_since_s = time_s;
   const bool carried_off = contradicted_since_s && misses >= kLostAfterMisses &&
