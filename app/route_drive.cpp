@@ -241,9 +241,14 @@ planning::Planner route_planner(const sim::World& world, const RovigoConfig& con
   constexpr double kHeadroomM = 0.1;
   maps::RobotModel robot = config.robot;
   robot.max_speed_m_s = std::min(robot.max_speed_m_s, speed_m_s);
+  // Who records keeps well clear of things: the camera sees more, and nothing hurries.
+  maps::InflationConfig inflation = config.inflation;
+  planning::PlannerConfig planning = config.planning;
+  inflation.soft_cost_sigma_m = std::max(inflation.soft_cost_sigma_m, 0.15);
+  planning.astar.soft_cost_weight = std::max(planning.astar.soft_cost_weight, 3.0);
   return {sim::true_grid(world, config.slam.grid.grid_resolution_m, kLowestObstacleM,
                          config.robot.body_height_m + kHeadroomM),
-          robot, config.inflation, config.planning};
+          robot, inflation, planning};
 }
 
 TPose2D route_start(const sim::Route& route, const sim::World& world,

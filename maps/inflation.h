@@ -10,7 +10,7 @@ namespace rovigo::maps {
 struct InflationConfig {
   double robot_radius_m = 0.30;  ///< nearer than this to an occupied cell's edge is lethal
   double soft_cost_sigma_m =
-      0.15;                  ///< of the Gaussian of the distance beyond robot_radius_m; 0: none
+      0.04;                  ///< of the Gaussian of the distance beyond robot_radius_m; 0: none
   int soft_cost_peak = 200;  ///< soft cost right at robot_radius_m, 0 .. Costmap::kMaxSoft
   MapMode map_mode = MapMode::kKnownFree;
 

@@ -105,7 +105,7 @@ bool GridSearch::run(Query& query) {
   const std::uint8_t* costs = grid.costs();
   const std::array<int, 8> offsets = grid.offsets();
   const int stride = grid.stride();
-  const MoveOrder& order = !soft && grid.has_every_move() ? kCanonicalMoves : kEveryMove;
+  const bool is_canonical = grid.has_every_move();
   std::uint32_t* cost_to_come = cost_to_come_.data();
 
   // Buckets an eighth of a step wide: narrow enough that order inside hardly matters.
@@ -187,6 +187,8 @@ bool GridSearch::run(Query& query) {
     const int y = row - 1;
     // On open ground the goal shares its bucket with all cells of equally short ways.
     if (best != kUnreached && entry.cost + query.heuristic(x, y) >= best) continue;
+    const bool pruned = is_canonical && (!soft || is_plain(costs + cell, stride));
+    const MoveOrder& order = pruned ? kCanonicalMoves : kEveryMove;
     expand(cell, entry.cost, x, y,
            order(entry.cell_and_move >> SearchGrid::kIndexBits, moves[cell]));
   }

@@ -56,10 +56,34 @@ CubicBSpline CubicBSpline::uniform(const std::vector<TPoint2D>& points,
       {2.0 * points[n - 1].x - points[n - 2].x, 2.0 * points[n - 1].y - points[n - 2].y});
   std::vector<double> knots(control.size() + 4);
   for (std::size_t i = 0; i < knots.size(); ++i) knots[i] = static_cast<double>(i) - 3.0;
-  return {std::move(knots), std::move(control)};
+  CubicBSpline out(std::move(knots), std::move(control));
+  out.is_uniform_ = true;
+  return out;
+}
+
+/// As at(), in closed form: most curves have uniform knots, and are looked at thousands of times.
+CurvePoint CubicBSpline::at_uniform(double parameter) const {
+  const std::size_t spans = control_.size() - 3;
+  const double u = std::clamp(parameter, 0.0, static_cast<double>(spans));
+  const std::size_t span = std::min(static_cast<std::size_t>(u), spans - 1);
+  const TPoint2D* c = control_.data() + span;
+  const double f = u - static_cast<double>(span), g = 1.0 - f;
+  const auto mix = [c](double b0, double b1, double b2, double b3) -> TPoint2D {
+    return {b0 * c[0].x + b1 * c[1].x + b2 * c[2].x + b3 * c[3].x,
+            b0 * c[0].y + b1 * c[1].y + b2 * c[2].y + b3 * c[3].y};
+  };
+  constexpr double kSixth = 1.0 / 6.0;
+  CurvePoint out;
+  out.position = mix(kSixth * g * g * g, kSixth * (4.0 + f * f * (3.0 * f - 6.0)),
+                     kSixth * (4.0 + g * g * (3.0 * g - 6.0)), kSixth * f * f * f);
+  out.first = mix(-0.5 * g * g, f * (1.5 * f - 2.0), g * (2.0 - 1.5 * g), 0.5 * f * f);
+  out.second = mix(g, 3.0 * f - 2.0, 3.0 * g - 2.0, f);
+  out.third = mix(-1.0, 3.0, -3.0, 1.0);
+  return out;
 }
 
 CurvePoint CubicBSpline::at(double parameter) const {
+  if (is_uniform_) return at_uniform(parameter);
   const double u = std::clamp(parameter, begin(), end());
   // Span k with t_k <= u < t_{k+1}; the last one includes its end.
   const auto after = std::upper_bound(knots_.begin() + 4, knots_.end() - 4, u);

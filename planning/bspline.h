@@ -45,8 +45,11 @@ class CubicBSpline {
   const std::vector<TPoint2D>& control_points() const { return control_; }
 
  private:
+  CurvePoint at_uniform(double parameter) const;
+
   std::vector<double> knots_;
   std::vector<TPoint2D> control_;
+  bool is_uniform_ = false;  ///< knots are whole numbers from -3 on
 };
 
 }  // namespace rovigo::planning

@@ -31,7 +31,8 @@ bool CostToGo::flood(const StepPrices& prices, const std::vector<maps::Cell>& go
   const std::uint8_t* moves = grid.moves();
   const std::uint8_t* soft_costs = grid.costs();
   const std::array<int, 8> offsets = grid.offsets();
-  const MoveOrder& order = !soft && grid.has_every_move() ? kCanonicalMoves : kEveryMove;
+  const bool is_canonical = grid.has_every_move();
+  const int stride = grid.stride();
   costs_.assign(grid.padded_size(), kUnreached);
   std::uint32_t* costs = costs_.data();
 
@@ -42,10 +43,10 @@ bool CostToGo::flood(const StepPrices& prices, const std::vector<maps::Cell>& go
   const std::uint32_t cost_limit = kUnreached - prices.dearest_step();
   std::size_t waiting = 0;
 
-  const auto expand = [&](std::uint32_t cell, unsigned tried) {
+  const auto expand = [&](std::uint32_t cell, unsigned tried, bool pruned) {
     const std::uint32_t cost_here = costs[cell];
     const std::uint8_t here = soft ? soft_costs[cell] : std::uint8_t{0};
-    if (soft) tried &= prices.improving_moves(costs + cell, soft_costs + cell, offsets);
+    if (soft && !pruned) tried &= prices.improving_moves(costs + cell, soft_costs + cell, offsets);
     for_each_move(tried, [&](std::size_t move) {
       const auto next = static_cast<std::uint32_t>(static_cast<int>(cell) + offsets[move]);
       const std::uint32_t cost =
@@ -53,8 +54,8 @@ bool CostToGo::flood(const StepPrices& prices, const std::vector<maps::Cell>& go
       const std::uint32_t old = costs[next];
       if (cost >= old) return;
       costs[next] = cost;
-      // Which move led here matters to the order of moves only.
-      if (soft && old >> shift == cost >> shift) return;
+      // Which move led here matters to the order of moves only, where costs are none.
+      if (soft && old >> shift == cost >> shift && soft_costs[next] != 0) return;
       buckets_[(cost >> shift) & (ring - 1)].push_back(next | static_cast<std::uint32_t>(move)
                                                                   << SearchGrid::kIndexBits);
       ++waiting;
@@ -64,7 +65,7 @@ bool CostToGo::flood(const StepPrices& prices, const std::vector<maps::Cell>& go
     if (grid.is_passable(goal)) costs[grid.index_of(goal)] = 0;
   }
   for (const maps::Cell goal : goals) {
-    if (grid.is_passable(goal)) expand(grid.index_of(goal), moves[grid.index_of(goal)]);
+    if (grid.is_passable(goal)) expand(grid.index_of(goal), moves[grid.index_of(goal)], false);
   }
   constexpr std::uint32_t kIndexMask = (std::uint32_t{1} << SearchGrid::kIndexBits) - 1;
   for (std::uint32_t due = 0; waiting > 0; ++due) {
@@ -74,7 +75,9 @@ bool CostToGo::flood(const StepPrices& prices, const std::vector<maps::Cell>& go
       const std::uint32_t cell = entry & kIndexMask;
       if (costs[cell] >> shift != due) continue;  // improved since
       if (costs[cell] > cost_limit) return false;
-      expand(cell, order(entry >> SearchGrid::kIndexBits, moves[cell]));
+      const bool pruned = is_canonical && (!soft || is_plain(soft_costs + cell, stride));
+      const MoveOrder& order = pruned ? kCanonicalMoves : kEveryMove;
+      expand(cell, order(entry >> SearchGrid::kIndexBits, moves[cell]), pruned);
     }
     bucket.clear();
   }

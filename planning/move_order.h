@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 
 #include "planning/search_grid.h"
 
@@ -55,6 +56,20 @@ class MoveOrder {
 
 inline constexpr MoveOrder kEveryMove{false};
 inline constexpr MoveOrder kCanonicalMoves{true};
+
+/// Do this cell and its eight neighbours cost nothing extra? Then they are passable, too (others
+/// have costs), and the canonical order holds there: the ways it leaves out have equals within
+/// these nine cells. `soft_costs` begins at the cell and has four readable bytes a row.
+inline bool is_plain(const std::uint8_t* soft_costs, int stride) {
+  if (*soft_costs != 0) return false;
+  std::uint32_t rows = 0;
+  for (const int row : {-stride, 0, stride}) {
+    std::uint32_t four = 0;
+    std::memcpy(&four, soft_costs + row - 1, sizeof four);
+    rows |= four;
+  }
+  return (rows & 0xFFFFFFU) == 0;  // the lowest three bytes on the machines this is built for
+}
 
 /// Calls `f(move)` for every bit set.
 template <typename F>

@@ -1,6 +1,7 @@
 #include "planning/shortcut.h"
 
 #include <algorithm>
+#include <array>
 
 namespace rovigo::planning {
 
@@ -89,6 +90,37 @@ ShortcutResult pull(const FreeSpace& space, const Path& path, double soft_cost_w
   return result;
 }
 
+/// Pulls the string tight: every vertex goes towards the line between its neighbours as far as that
+/// is free and cheaper. What string pulling leaves are cells of the search's path, not corners.
+void tighten(const FreeSpace& space, Path& path, double soft_cost_weight) {
+  constexpr int kSweeps = 3;
+  constexpr std::array<double, 4> kShares{1.0, 0.5, 0.25, 0.1};
+  std::vector<TPoint2D>& p = path.points;
+  const auto cost = [&](const TPoint2D& a, const TPoint2D& b) {
+    return space.cost(a, b, soft_cost_weight);
+  };
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (std::size_t i = 1; i + 1 < p.size(); ++i) {
+      const TPoint2D &a = p[i - 1], &b = p[i + 1];
+      const TPoint2D along = b - a;
+      const double length2 = along.x * along.x + along.y * along.y;
+      if (length2 <= 0.0) continue;
+      const TPoint2D off = p[i] - a;
+      const double f = std::clamp((off.x * along.x + off.y * along.y) / length2, 0.0, 1.0);
+      const TPoint2D foot{a.x + f * along.x, a.y + f * along.y};
+      const double old_cost = cost(a, p[i]) + cost(p[i], b);
+      for (const double share : kShares) {
+        const TPoint2D moved{p[i].x + share * (foot.x - p[i].x),
+                             p[i].y + share * (foot.y - p[i].y)};
+        if (!space.is_free(a, moved) || !space.is_free(moved, b)) continue;
+        if (cost(a, moved) + cost(moved, b) >= old_cost) continue;
+        p[i] = moved;
+        break;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 ShortcutResult shortcut(const FreeSpace& space, const Path& path, double soft_cost_weight) {
@@ -101,6 +133,7 @@ ShortcutResult shortcut(const FreeSpace& space, const Path& path, double soft_co
   ShortcutResult second = pull(space, back, soft_cost_weight);
   if (!second.ok) return forward;
   std::reverse(second.path.points.begin(), second.path.points.end());
+  tighten(space, second.path, soft_cost_weight);
   return second;
 }
 

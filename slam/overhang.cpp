@@ -22,34 +22,42 @@ int lowest_bit(std::uint16_t bits) {
   return b;
 }
 
-/// The bands of a top's edge in a cell: few, occupied above a free one (below which a leg may
-/// stand). The front of a cupboard on feet is no such edge.
+/// The bands of a top's edge in a cell: few, one above the other, free below. The front of a
+/// cupboard on feet is no such edge, nor is what rays now and then get through: a leg, a wall's
+/// outermost cell.
 std::uint16_t edge_in(const CellBands& c) {
-  if (c.free == 0) return 0;
-  const std::uint16_t up_to_free = (2U << lowest_bit(c.free)) - 1U;
-  const auto edge = static_cast<std::uint16_t>(c.occupied & ~up_to_free);
-  return std::popcount(edge) <= kThickestEdge ? edge : 0;
+  if (c.occupied == 0 || std::popcount(c.occupied) > kThickestEdge) return 0;
+  const int lowest = lowest_bit(c.occupied);
+  const bool in_one = std::has_single_bit((c.occupied >> lowest) + 1U);
+  return in_one && (c.free & ((1U << lowest) - 1U)) != 0U ? c.occupied : 0;
+}
+
+std::uint16_t hidden_in(const CellBands& c) {
+  return kUpperBands & static_cast<std::uint16_t>(~c.free);
 }
 
 /// Crossed by rays below a height that hides: nothing occupied, not all of the upper half free, and
 /// something below the first gap free.
 bool is_under_something(const CellBands& c) {
-  const std::uint16_t gaps = kUpperBands & static_cast<std::uint16_t>(~c.free);
+  const std::uint16_t gaps = hidden_in(c);
   if (c.occupied != 0 || gaps == 0) return false;
   return (c.free & ((1U << lowest_bit(gaps)) - 1U)) != 0U;
 }
 
-/// The bands of the edge that a walk under cover ends at; none where it ends at no edge.
+/// What of a walk's own hidden height the edge takes up that it ends at under cover; none where it
+/// ends at no edge. A top's underside, seen from close by, is passed on the way.
 std::uint16_t edge_ahead(const std::vector<CellBands>& bands, const maps::GridGeometry& g,
                          maps::Cell from, const TPoint2D& direction) {
+  const std::uint16_t hidden = hidden_in(bands[g.index_of(from)]);
   const int farthest = static_cast<int>(kReachM / g.resolution_m);
   for (int i = 1; i <= farthest; ++i) {
     const maps::Cell c{from.x + static_cast<int>(std::lround(i * direction.x)),
                        from.y + static_cast<int>(std::lround(i * direction.y))};
     if (!g.contains(c)) return 0;
     const CellBands& at = bands[g.index_of(c)];
-    if (at.occupied != 0) return edge_in(at);
-    if (!is_under_something(at)) return 0;
+    const std::uint16_t edge = edge_in(at);
+    if ((edge & hidden) != 0) return edge & hidden;
+    if (edge == 0 && !is_under_something(at)) return 0;
   }
   return 0;
 }
@@ -66,16 +74,12 @@ int widest_gap(const Directions& edges) {
   return widest;
 }
 
-/// Edges of one level stand all around the cell, as far as it is hidden at about their height: a
-/// top's edges and underside may fall on two neighbouring bands.
+/// Edges of one level stand all around the cell, at a height that is hidden in it.
 bool is_amid_edges(const std::vector<CellBands>& bands, const maps::GridGeometry& g,
                    std::size_t cell, const std::array<TPoint2D, kDirections>& directions) {
-  const auto hidden = static_cast<std::uint16_t>(kUpperBands & ~bands[cell].free);
-  const int about = hidden | hidden << 1 | hidden >> 1;
   std::array<Directions, kHeightBands + 1> edges;  // by their lowest band
   for (std::size_t i = 0; i < directions.size(); ++i) {
-    const auto edge =
-        static_cast<std::uint16_t>(edge_ahead(bands, g, g.cell_of(cell), directions[i]) & about);
+    const std::uint16_t edge = edge_ahead(bands, g, g.cell_of(cell), directions[i]);
     if (edge != 0) edges[static_cast<std::size_t>(lowest_bit(edge))].set(i);
   }
   for (std::size_t band = 0; band < kHeightBands; ++band) {

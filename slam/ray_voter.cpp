@@ -17,6 +17,7 @@ constexpr float kCellsBeforeEnd = 0.75f;  // what stopped it may reach into its 
 constexpr float kCrowdedM = 0.8f;         // nearer, one ray in eight is plenty
 constexpr int kCrowd = 8;
 constexpr float kClearBeyondM = 2.0f;  // farther than obstacles are marked, space is still cleared
+constexpr std::size_t kShallowBands = 2;
 constexpr int kMostCounts = 250;
 constexpr int kHalfBands = 2 * kHeightBands;
 // Rays expected in half a band, from which on each half gets one at least, however rows fall.
@@ -141,6 +142,16 @@ int RayVoter::vote_of(const Counts& counts, double range_m) const {
   return -static_cast<int>(std::lround(kMiss * kStepsPerLogOdds * many));
 }
 
+/// Of a cell. Rays that pass close to the floor meet it at too shallow an angle for a return: who
+/// stood there could leave, and his feet would stay. What is taller is known by what is higher up.
+std::array<int, kHeightBands> RayVoter::votes_of(const Counts* bands, double range_m) const {
+  std::array<int, kHeightBands> votes{};
+  for (std::size_t b = 0; b < votes.size(); ++b) votes[b] = vote_of(bands[b], range_m);
+  const bool is_taller = votes[kShallowBands] > 0 && votes[kShallowBands + 1] > 0;
+  for (std::size_t b = 0; b < kShallowBands && is_taller; ++b) votes[b] = std::min(votes[b], 0);
+  return votes;
+}
+
 void RayVoter::cast_votes(EvidencePatch& patch) const {
   for (int y = 0; y < height_; ++y) {
     const Counts* row =
@@ -159,9 +170,8 @@ void RayVoter::cast_votes(EvidencePatch& patch) const {
       CellEvidence& evidence = (*tile)[EvidencePatch::place_in_tile(cell)];
       const double range = std::hypot((cell.x + 0.5) * config_.grid_resolution_m - eye_.x,
                                       (cell.y + 0.5) * config_.grid_resolution_m - eye_.y);
-      for (int b = 0; b < kHeightBands; ++b) {
-        EvidencePatch::add(evidence[static_cast<std::size_t>(b)], vote_of(row[b], range));
-      }
+      const auto votes = votes_of(row, range);
+      for (std::size_t b = 0; b < votes.size(); ++b) EvidencePatch::add(evidence[b], votes[b]);
     }
   }
 }

@@ -47,6 +47,7 @@ class RayVoter {
   std::size_t cell_at(const CellRay& ray, float r) const;
   void cast_votes(EvidencePatch& patch) const;
   int vote_of(const Counts& counts, double range_m) const;
+  std::array<int, kHeightBands> votes_of(const Counts* bands, double range_m) const;
   bool is_crossed(const Counts& counts, double range_m) const;
 
   GridConfig config_;

@@ -75,10 +75,13 @@ Costmap random_costmap(std::mt19937_64& random, double density, bool soft) {
   g.height = 5 + static_cast<int>(random() % 60);
   Costmap map(g);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
+  // On half of the maps most cells cost nothing, as on open ground, where fewer moves are tried.
+  const double share = random() % 2 != 0 ? 1.0 : 0.04;
+  const double closed = share < 1.0 ? 0.2 * density : density;
   for (auto& cell : map.cells) {
-    if (unit(random) < density) {
+    if (unit(random) < closed) {
       cell = random() % 2 != 0 ? Costmap::kLethal : Costmap::kUnknown;
-    } else if (soft) {
+    } else if (soft && unit(random) < share) {
       cell = static_cast<std::uint8_t>(random() % (Costmap::kMaxSoft + 1));
     }
   }
@@ -336,6 +339,23 @@ TEST(WeightedAStar, StaysWithinItsBoundAndExpandsLess) {
     weighted_expanded += fast.expanded_cells;
   }
   EXPECT_LT(weighted_expanded, exact_expanded);
+}
+
+TEST(WeightedAStar, OpensNoCellTwiceWhateverTheSoftCosts) {
+  maps::GridGeometry g;
+  g.resolution_m = 0.05;
+  g.width = g.height = 300;
+  Costmap map(g);
+  std::mt19937_64 random(11);
+  for (auto& cell : map.cells) cell = static_cast<std::uint8_t>(random() % Costmap::kMaxSoft);
+  const SearchGrid grid(map, 8);
+  GridSearch search;
+  for (const double weight : {1.01, 1.5, 3.0, 10.0}) {
+    const auto found =
+        search.find(grid, {0, 0}, {299, 280}, {.soft_cost = 50.0, .heuristic = weight});
+    ASSERT_TRUE(found.found);
+    EXPECT_LE(found.expanded_cells, g.size()) << "heuristic weight " << weight;
+  }
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ namespace {
 using namespace planning;  // NOLINT
 
 constexpr std::size_t kQueries = 100;
+const double kSoftCost = AStarConfig{}.soft_cost_weight;  // what users get
 
 struct Map {
   std::string name;
@@ -76,7 +77,7 @@ void raw_searches(const Map& map, const maps::OccupancyGrid& grid) {
                      .answer = [&](const CellPair& q) { return boost.find(q.first, q.second); }});
   methods.push_back({.name = "A*, soft costs at zero",
                      .asked_ratio = map.asked_astar,
-                     .answer = answered_by(astar, raw, {.soft_cost = 3.0})});
+                     .answer = answered_by(astar, raw, {.soft_cost = kSoftCost})});
   methods.push_back({.name = "jump point search",
                      .asked_ratio = map.asked_jumps,
                      .answer = [&](const CellPair& q) {
@@ -103,12 +104,12 @@ void inflated_searches(const Map& map, const maps::OccupancyGrid& grid) {
       {.name = "inflated: A*, soft cost 0", .answer = answered_by(astar, inflated, {})});
   plain.push_back(
       {.name = "inflated: Theta*", .exact = false, .answer = answered_by(any_angle, inflated)});
-  soft.push_back({.name = "inflated: A*, soft cost 3",
-                  .answer = answered_by(astar, inflated, {.soft_cost = 3.0}, true)});
+  soft.push_back({.name = "inflated: A*, soft costs",
+                  .answer = answered_by(astar, inflated, {.soft_cost = kSoftCost}, true)});
   soft.push_back(
-      {.name = "inflated: weighted 1.5, soft 3",
+      {.name = "inflated: weighted 1.5, soft",
        .exact = false,
-       .answer = answered_by(astar, inflated, {.soft_cost = 3.0, .heuristic = 1.5}, true)});
+       .answer = answered_by(astar, inflated, {.soft_cost = kSoftCost, .heuristic = 1.5}, true)});
   const auto queries = long_queries(inflated, kQueries);
   if (queries.empty()) return;
   race(plain, queries);
@@ -159,7 +160,7 @@ void cost_to_go(const Map& map, const maps::OccupancyGrid& grid) {
     print_memory(map, ("cost-to-go, " + what).c_str(), to_go.memory_bytes(), grid);
   };
   figure("raw grid", SearchGrid(grid, maps::MapMode::kKnownFree, 8), 0.0);
-  figure("soft cost 3", SearchGrid(maps::inflate_safe(grid, {}), 8), 3.0);
+  figure("soft costs", SearchGrid(maps::inflate_safe(grid, {}), 8), kSoftCost);
 }
 
 void inflation(const Map& map, maps::OccupancyGrid grid) {
@@ -212,7 +213,7 @@ void whole_plans(const Map& map, const maps::OccupancyGrid& grid, double soft_co
     }
     ratios.push_back(result.path_length_m / search.find(cells, from, to, {}).length_m);
   }
-  const std::string with = ", soft cost " + std::to_string(static_cast<int>(soft_cost_weight));
+  const std::string with = soft_cost_weight > 0.0 ? ", default settings" : ", soft costs at zero";
   print_figure(map.name, "whole plan" + with + ", median ms", median(times), 10);
   print_figure(map.name, "driven length over the 8-connected optimum" + with, median(ratios),
                0.965);
@@ -243,6 +244,7 @@ int main(int argc, char** argv) {
       inflation(map, *grid);
     }
     if (map.file != kWillow) continue;
-    for (const double soft_cost_weight : {3.0, 0.0}) whole_plans(map, *grid, soft_cost_weight);
+    for (const double soft_cost_weight : {kSoftCost, 0.0})
+      whole_plans(map, *grid, soft_cost_weight);
   }
 }

@@ -231,7 +231,8 @@ TEST(Planner, SoftCostsKeepAwayFromWalls) {
   careful.astar.soft_cost_weight = 10.0;
   const auto request = from_to({0.5, 0.4}, {7.5, 0.4});
   const auto near = planner_for(grid, shortest).plan(request);
-  const auto far = planner_for(grid, careful).plan(request);
+  const Planner wide_berth(grid, {}, {.soft_cost_sigma_m = 0.15}, careful);
+  const auto far = wide_berth.plan(request);
   expect_sound(near, grid);
   expect_sound(far, grid);
   const auto height = [](const PlanResult& r) {

@@ -211,6 +211,20 @@ TEST_F(Mapping, SomethingThatLeftIsCleared) {
   EXPECT_TRUE(free(grid(), 1.5, 0.0));
 }
 
+TEST_F(Mapping, WhoStoodWhereTheFloorGivesNoReturnLeavesNoFeetBehind) {
+  // Farther than 1.4 m the floor is too grazing: no ray clears what is just above it.
+  const auto without_far_floor = [&](const std::vector<Slab>& slabs) {
+    cv::Mat depth = view(camera_, slabs);
+    const cv::Mat floor_alone = view(camera_, {});
+    depth.setTo(0, (depth == floor_alone) & (depth > 1400));
+    return depth;
+  };
+  look(without_far_floor({{1.5, 1.8, 0.0, 1.8}, wall(4.0)}), 8);
+  EXPECT_TRUE(occupied(grid(), 1.5, 0.0));
+  look(without_far_floor({wall(4.0)}), 12);
+  EXPECT_TRUE(free(grid(), 1.5, 0.0));
+}
+
 TEST_F(Mapping, RaysOverSomethingLowDoNotClearIt) {
   look_at({{1.5, 1.8, 0.0, 0.15}, wall(4.0)}, 3);
   cv::Mat upper_part = view(camera_, {wall(4.0)});
