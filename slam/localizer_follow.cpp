@@ -13,7 +13,7 @@ constexpr int kLostAfterMisses = 3;       // and so many frames
 constexpr double kReconfirmAfterS = 0.5;  // blind for longer, the rover may be anywhere
 constexpr double kHeldScanShare = 0.75;   // of one view, to hold a pose by it alone
 constexpr std::size_t kEnoughScan = 40;   // points of it
-constexpr double kKeptInliers = 0.98;     // a frame; half is left after two seconds
+constexpr double kKeptInliers = 0.98;     // a frame, rounded down; half is left after a second
 
 }  // namespace
 
