@@ -198,7 +198,7 @@ double octave_scale(int octave, const FeatureConfig& config) {
 
 FeatureSet extract_features(const CameraFrame& frame, const CameraModel& camera,
                             const FeatureConfig& config, const DepthConfig& depth,
-                            const RollingShutter& shutter) {
+                            const RollingShutter& shutter, const std::optional<FloorDepth>& floor) {
   std::vector<cv::KeyPoint> keypoints = find_keypoints(frame.gray, config);
   const auto orb =
       cv::ORB::create(config.features_per_frame, static_cast<float>(config.pyramid_scale),
@@ -218,14 +218,16 @@ FeatureSet extract_features(const CameraFrame& frame, const CameraModel& camera,
     Feature f;
     f.pixel = at_middle_row(camera.undistort(raw), raw.y(), camera, shutter).cast<float>();
     f.angle_rad = static_cast<float>(k.angle * CV_PI / 180.0);
-    f.depth_m = static_cast<float>(frame.depth_at(raw, depth));
+    f.depth_m = static_cast<float>(floor ? floor->at(raw) : frame.depth_at(raw, depth));
     f.octave = static_cast<std::uint8_t>(k.octave);
     features.push_back(f);
     Descriptor d;
     std::memcpy(d.data(), bits.ptr<std::uint8_t>(static_cast<int>(i)), sizeof d);
     descriptors.push_back(d);
   }
-  return FeatureSet(std::move(features), std::move(descriptors), camera.width(), camera.height());
+  FeatureSet set(std::move(features), std::move(descriptors), camera.width(), camera.height());
+  if (floor) set.set_floor_roughness(floor->roughness());
+  return set;
 }
 
 }  // namespace rovigo::slam

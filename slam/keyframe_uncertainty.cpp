@@ -10,6 +10,8 @@ namespace {
 // NEES on recorded drives (./run bench slam prints it); turns and mirroring floors ask for most.
 constexpr double kStepM = 0.0007, kStepMPerRootM = 0.003;
 constexpr double kStepRad = 0.0005, kStepRadPerRootRad = 0.001;
+// A floor read unevenly adds in proportion: the corners on it err together.
+constexpr double kUnevenMPerRootM = 0.25, kUnevenRadPerRootM = 0.08;
 constexpr double kLoopM = 0.01, kLoopRad = 0.004;  // between the views of one place
 
 Eigen::Matrix3d carried(const Eigen::Matrix3d& covariance, const Se3& from, const Se3& to) {
@@ -23,13 +25,18 @@ Eigen::Matrix3d planar(double variance_m2, double variance_rad2) {
   return Eigen::Vector3d(0.5 * variance_m2, 0.5 * variance_m2, variance_rad2).asDiagonal();
 }
 
-/// Known as `covariance` at `from`, what is known one step on.
-Eigen::Matrix3d stepped(const Eigen::Matrix3d& covariance, const Se3& from, const Se3& to) {
+double square(double x) { return x * x; }
+
+/// Known as `covariance` at `from`, what is known one step on; `roughness` is the floor's there.
+Eigen::Matrix3d stepped(const Eigen::Matrix3d& covariance, const Se3& from, const Se3& to,
+                        double roughness) {
   const double way = (to.translation - from.translation).norm();
   const double turn = so3_log(from.rotation.transpose() * to.rotation).norm();
   return carried(covariance, from, to) +
-         planar(kStepM * kStepM + kStepMPerRootM * kStepMPerRootM * way,
-                kStepRad * kStepRad + kStepRadPerRootRad * kStepRadPerRootRad * turn);
+         planar(
+             square(kStepM) + (square(kStepMPerRootM) + square(kUnevenMPerRootM * roughness)) * way,
+             square(kStepRad) + square(kStepRadPerRootRad) * turn +
+                 square(kUnevenRadPerRootM * roughness) * way);
 }
 
 double position_variance(const Eigen::Matrix3d& covariance) {
@@ -45,7 +52,10 @@ void MapUncertainty::see(const Keyframe& keyframe) {
 
 void MapUncertainty::join(Keyframe& keyframe, const Eigen::Matrix3d& reckoned, bool blind) {
   const bool first = !begun_;  // what all others are held against
-  if (!first) covariance_ = stepped(covariance_, map_from_base_, keyframe.map_from_base);
+  if (!first) {
+    covariance_ = stepped(covariance_, map_from_base_, keyframe.map_from_base,
+                          static_cast<double>(keyframe.features.floor_roughness()));
+  }
   begun_ = true;
   map_from_base_ = keyframe.map_from_base;
   keyframe.covariance = covariance_;
@@ -67,9 +77,9 @@ void share_certainty(int seen_again, LandmarkMap& map) {
   while (k > seen_again &&
          position_variance(known) < position_variance(map.keyframe(k).covariance)) {
     map.keyframe(k).covariance = known;
-    const Se3 from = map.keyframe(k).map_from_base;
-    --k;
-    known = stepped(known, from, map.keyframe(k).map_from_base);
+    const Keyframe& from = map.keyframe(k--);
+    known = stepped(known, from.map_from_base, map.keyframe(k).map_from_base,
+                    static_cast<double>(from.features.floor_roughness()));
   }
 }
 

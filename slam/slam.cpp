@@ -101,7 +101,8 @@ PoseEstimate Slam::Impl::on_frame(const mrpt::obs::CObservation3DRangeScan& scan
     features = extract_features(
         frame, camera, config.features, config.depth,
         rolling_shutter_of(rig, config.tracking, motion.predict(frame.time_s).turn_rate_rad_s,
-                           base_from_camera));
+                           base_from_camera),
+        surroundings.floor_under(frame));
   }
 
   const TrackResult result = track(frame, features);

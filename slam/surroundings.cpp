@@ -19,6 +19,7 @@ constexpr int kSettledFrames = 10;
 constexpr double kBodyRadiusM = 0.20;  // half the rover's width: where it was is free
 constexpr double kPatchRadiusM = 0.75;
 constexpr int kMinShared = 20;  // landmarks, for keyframes to hang together rigidly
+constexpr int kFloorLooks = 5;  // teach the floor's place well enough to start with
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
 /// The frame of a patch: the map's axes as they are now, from a corner of a cell, so that patches
@@ -33,6 +34,7 @@ TPose2D frame_at(const Se3& map_from_base, double resolution_m) {
 Surroundings::Surroundings(const SlamConfig& config, const CameraModel& camera,
                            const Se3& base_from_camera, bool on_floor)
     : config_(config),
+      camera_(camera),
       base_from_camera_(base_from_camera),
       on_floor_(on_floor),
       filter_(config.depth_filter),
@@ -78,6 +80,15 @@ std::size_t Surroundings::patch_of(const LandmarkMap& map, int keyframe) {
 /// Heights count from the floor that the camera sees.
 void Surroundings::follow_floor(const DepthScanner::Samples& samples, double depth_unit_m) {
   floor_.update(scanner_.scan(samples, depth_unit_m, floor_.corrected(base_from_camera_)));
+}
+
+std::optional<FloorDepth> Surroundings::floor_under(const CameraFrame& frame) {
+  if (!on_floor_ || frame.depth.empty()) return std::nullopt;
+  if (floor_.plane().looks < kFloorLooks) {
+    follow_floor(scanner_.sample(frame.depth), frame.depth_unit_m);
+  }
+  if (floor_.plane().looks == 0) return std::nullopt;
+  return FloorDepth(frame, camera_, config_.depth, floor_.corrected(base_from_camera_));
 }
 
 void Surroundings::look(const CameraFrame& frame, const LandmarkMap& map, int keyframe,

@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "maps/occupancy_grid.h"
@@ -10,6 +11,7 @@
 #include "slam/depth_filter.h"
 #include "slam/depth_scan.h"
 #include "slam/evidence_patch.h"
+#include "slam/floor_depth.h"
 #include "slam/floor_tracker.h"
 #include "slam/landmark_map.h"
 #include "slam/motion_watch.h"
@@ -38,6 +40,9 @@ class Surroundings {
 
   /// The floor as the camera has seen it so far, against what the mount says.
   const FloorPlane& floor() const { return floor_.plane(); }
+  /// The same for the depths of a frame, which teaches it as long as it is hardly known. Nothing
+  /// while it is not, and for a camera that nobody knows the height of.
+  std::optional<FloorDepth> floor_under(const CameraFrame& frame);
 
   std::size_t memory_bytes() const;
 
@@ -64,6 +69,7 @@ class Surroundings {
   void follow_floor(const DepthScanner::Samples& samples, double depth_unit_m);
 
   SlamConfig config_;
+  CameraModel camera_;
   Se3 base_from_camera_;
   bool on_floor_;
   DepthFilter filter_;

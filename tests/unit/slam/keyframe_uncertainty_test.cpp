@@ -20,12 +20,13 @@ double position_sigma(const Keyframe& k) {
 }
 
 /// Keyframes half a metre apart, straight on, each tracked from the one before.
-std::vector<Keyframe> straight_chain(int count) {
+std::vector<Keyframe> straight_chain(int count, double floor_roughness = 0.0) {
   MapUncertainty uncertainty;
   std::vector<Keyframe> out;
   for (int i = 0; i < count; ++i) {
     Keyframe k;
     k.map_from_base = from_planar({0.5 * i, 0.0, 0.0});
+    k.features.set_floor_roughness(floor_roughness);
     uncertainty.join(k, Eigen::Matrix3d::Zero(), false);
     out.push_back(k);
   }
@@ -46,6 +47,12 @@ TEST(MapUncertainty, AnErrorOfHeadingSwingsAllThatComesAfterIt) {
   EXPECT_NEAR(whole(0, 0), 2 * half(0, 0), 1e-12);
   EXPECT_GT(whole(1, 1), 6 * half(1, 1));  // a random walk of heading: the cube of the way
   EXPECT_GT(whole(1, 2), 0.0);
+}
+
+TEST(MapUncertainty, GrowsFasterOverAFloorThatIsReadUnevenly) {
+  const auto even = straight_chain(21), uneven = straight_chain(21, 0.03);
+  EXPECT_GT(position_sigma(uneven.back()), 2.0 * position_sigma(even.back()));
+  EXPECT_GT(uneven.back().covariance(2, 2), 2.0 * even.back().covariance(2, 2));
 }
 
 TEST(MapUncertainty, DeadReckoningCountsOnceHoweverManyKeyframesItMakes) {
