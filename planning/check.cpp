@@ -104,17 +104,23 @@ class Checker {
   }
 
   void safety() {
-    const double start_clearance = clearance(maps::position_of(points_.front().pose));
+    const double start_clearance = clearance(points_.front().pose);
     bool escaping = options_.escape_allowed;
     report_.min_clearance_m = options_.clearance_looked_m;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      const TPoint2D a = maps::position_of(points_[i > 0 ? i - 1 : 0].pose);
-      const TPoint2D b = maps::position_of(points_[i].pose);
-      const int n =
-          std::max(1, static_cast<int>(std::ceil(maps::distance(a, b) / kSampleSpacingM)));
+      const TPose2D& a = points_[i > 0 ? i - 1 : 0].pose;
+      const TPose2D& b = points_[i].pose;
+      const double turn = maps::wrap_angle(b.phi - a.phi);
+      const double corner_moves =
+          0.5 * std::abs(turn) *
+          std::hypot(options_.footprint.length_m, options_.footprint.width_m);
+      const double moves =
+          maps::distance(maps::position_of(a), maps::position_of(b)) + corner_moves;
+      const int n = std::max(1, static_cast<int>(std::ceil(moves / kSampleSpacingM)));
       for (int k = 1; k <= n; ++k) {
         const double f = static_cast<double>(k) / n;
-        look_at({a.x + f * (b.x - a.x), a.y + f * (b.y - a.y)}, start_clearance, escaping);
+        look_at({a.x + f * (b.x - a.x), a.y + f * (b.y - a.y), a.phi + f * turn}, start_clearance,
+                escaping);
       }
     }
     if (report_.unsafe_samples > 0) {
@@ -124,10 +130,11 @@ class Checker {
     }
   }
 
-  void look_at(const TPoint2D& p, double start_clearance, bool& escaping) {
+  void look_at(const TPose2D& pose, double start_clearance, bool& escaping) {
     ++report_.samples;
-    const double c = clearance(p);
-    const bool roomy = c >= options_.robot_radius_m - kClearanceRounding && !on_blocked_ground(p);
+    const double c = clearance(pose);
+    const bool fits = has_footprint() ? c > 0.0 : c >= options_.robot_radius_m - kClearanceRounding;
+    const bool roomy = fits && !on_blocked_ground(maps::position_of(pose));
     if (escaping && roomy) escaping = false;
     if (escaping) {
       // One cell nearer than at the start is the most an escape may come.
@@ -155,6 +162,14 @@ class Checker {
     const maps::Cell cell = grid_.geometry.cell_at(p);
     if (!grid_.geometry.contains(cell)) return false;
     return !options_.unknown_is_blocked || !maps::OccupancyGrid::is_unknown(grid_.at(cell));
+  }
+
+  bool has_footprint() const { return options_.footprint.length_m > 0.0; }
+
+  /// Of the centre, or of the footprint where there is one.
+  double clearance(const TPose2D& pose) const {
+    if (!has_footprint()) return clearance(maps::position_of(pose));
+    return footprint_clearance(grid_, pose, options_.footprint, options_.clearance_looked_m);
   }
 
   /// Brute force over all cells within reach.

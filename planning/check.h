@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "maps/occupancy_grid.h"
+#include "planning/footprint_check.h"
 #include "planning/timing.h"
 #include "planning/trajectory.h"
 
@@ -12,6 +13,7 @@ namespace rovigo::planning {
 
 struct CheckOptions {
   double robot_radius_m = 0.30;
+  FootprintSize footprint = {};  ///< not empty: checked instead of the circle
   MotionLimits limits = {};
   bool escape_allowed = false;      ///< may begin nearer to an obstacle than the radius
   bool unknown_is_blocked = true;   ///< map mode 0

@@ -211,28 +211,29 @@ void JumpPointSearch::reach(Query& query, maps::Cell cell, std::uint32_t cost, s
 }
 
 void JumpPointSearch::collect_path(const Query& query, GridSearchResult& result) const {
-  std::uint32_t index = index_of(query.goal);
   const std::uint32_t start = index_of(query.start);
-  std::size_t diagonal_steps = 0;
-  result.cells.push_back(query.goal);
-  while (index != start) {
-    // Backwards: first the straight run, then the diagonal one.
-    const std::uint32_t before = labels_[index].before & kCellMask;
-    const maps::Cell target = cell_of(before);
-    while (result.cells.back() != target) {
-      maps::Cell at = result.cells.back();
-      const int dx = target.x - at.x, dy = target.y - at.y;
-      const bool straight = std::abs(dx) != std::abs(dy);
-      const bool along_row = straight && std::abs(dx) > std::abs(dy);
-      if (!straight || along_row) at.x += dx > 0 ? 1 : -1;
-      if (!straight || !along_row) at.y += dy > 0 ? 1 : -1;
-      if (!straight) ++diagonal_steps;
-      result.cells.push_back(at);
-    }
-    index = before;
+  const auto before = [&](std::uint32_t index) { return labels_[index].before & kCellMask; };
+  std::size_t steps = 0, diagonal_steps = 0;
+  maps::Cell at = query.goal;
+  for (std::uint32_t i = index_of(query.goal); i != start; i = before(i)) {
+    const maps::Cell from = cell_of(before(i));
+    steps += static_cast<std::size_t>(std::max(std::abs(from.x - at.x), std::abs(from.y - at.y)));
+    at = from;
   }
-  std::reverse(result.cells.begin(), result.cells.end());
-  const std::size_t steps = result.cells.size() - 1;
+  result.cells.resize(steps + 1);
+  auto out = result.cells.rbegin();
+  *out++ = at = query.goal;
+  for (std::uint32_t i = index_of(query.goal); i != start; i = before(i)) {
+    const maps::Cell from = cell_of(before(i));
+    const int dx = from.x - at.x, dy = from.y - at.y;
+    const int nx = std::abs(dx), ny = std::abs(dy), diagonal = std::min(nx, ny);
+    const int step_x = dx > 0 ? 1 : -1, step_y = dy > 0 ? 1 : -1;
+    // Backwards: first the straight run, then the diagonal one.
+    for (int k = diagonal; k < nx; ++k) *out++ = {at.x += step_x, at.y};
+    for (int k = diagonal; k < ny; ++k) *out++ = {at.x, at.y += step_y};
+    for (int k = 0; k < diagonal; ++k) *out++ = {at.x += step_x, at.y += step_y};
+    diagonal_steps += static_cast<std::size_t>(diagonal);
+  }
   result.length_m = geometry_.resolution_m * (static_cast<double>(steps - diagonal_steps) +
                                               kSqrt2 * static_cast<double>(diagonal_steps));
 }

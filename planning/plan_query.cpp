@@ -7,37 +7,35 @@
 #include <numeric>
 
 #include "planning/check.h"
-#include "planning/cost_to_go.h"
 #include "planning/escape.h"
 #include "planning/reference_spline.h"
 #include "planning/refusal.h"
-#include "planning/sampling_planner.h"
-#include "planning/shortcut.h"
 #include "planning/timing.h"
-#include "planning/tour.h"
 
 namespace rovigo::planning {
 
 namespace {
 
-/// Path points this near to each other are one.
-constexpr double kSamePointM = 1e-6;
+/// Kept around the rectangle: covers what rounding and the time steps of a trajectory move.
+constexpr double kFootprintMarginM = 0.005;
+/// The rectangle's clearance is reported up to this.
+constexpr double kFootprintClearanceReportedM = 0.3;
 /// Clearances are reported up to this; further is open ground.
 constexpr double kClearanceReportedM = 10.0;
-
-void append(std::vector<TPoint2D>& points, const TPoint2D& p) {
-  if (points.empty() || maps::distance(points.back(), p) > kSamePointM) points.push_back(p);
-}
-
-std::string meters(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f m", value);
-  return text;
-}
 
 PlannerConfig validated(const PlannerConfig& config) {
   validate(config);
   return config;
+}
+
+/// The centre's distance to obstacles alone decides for the circle; for the rectangle it must be at
+/// least the inscribed radius.
+maps::InflationConfig inflation_for(const maps::RobotModel& robot, maps::InflationConfig inflation,
+                                    const PlannerConfig& config) {
+  if (plans_with_rectangle(config)) {
+    inflation.robot_radius_m = footprint_of(robot).inscribed_radius_m();
+  }
+  return inflation;
 }
 
 }  // namespace
@@ -46,12 +44,16 @@ PlanningContext::PlanningContext(const maps::OccupancyGrid& g, const maps::Robot
                                  const maps::InflationConfig& i, const PlannerConfig& c)
     : grid(g),
       robot(r),
-      inflation(i),
+      inflation(inflation_for(r, i, c)),
       config(validated(c)),
       kind(parse_planner_kind(c.planner).value_or(PlannerKind::kAStar)),
-      costmap(maps::inflate_safe(grid, i)),
+      costmap(maps::inflate_safe(grid, inflation)),
       search_grid(costmap, c.astar.connectivity),
-      space(grid, costmap, i.map_mode == maps::MapMode::kEverything ? 0.0 : i.robot_radius_m) {}
+      space(grid, costmap,
+            i.map_mode == maps::MapMode::kEverything ? 0.0 : inflation.robot_radius_m) {
+  if (plans_with_rectangle(config))
+    footprint.emplace(grid, space, footprint_of(robot), kFootprintMarginM);
+}
 
 PlanResult PlanQuery::run() {
   begin(PlanStage::kSearch);
@@ -61,7 +63,7 @@ PlanResult PlanQuery::run() {
     smooth_path();
     begin(PlanStage::kTime);
     time_path();
-    measure();
+    if (!context_.footprint || footprint_is_safe()) measure();
   }
   begin(PlanStage::kDone);
   return std::move(result_);
@@ -75,6 +77,13 @@ bool PlanQuery::settle_start() {
                   "The start " + text_of(given) + " is outside the map: " + map_extent() + ".");
   }
   start_ = given;
+  if (context_.footprint) {
+    if (fits(given,
+             request_.start_heading_given ? std::optional(request_.start.phi) : std::nullopt))
+      return true;
+    return refuse(PlanStatus::kStartOccupied, given,
+                  "At the start " + text_of(given) + " the rover's footprint touches an obstacle.");
+  }
   if (context_.space.is_free(given)) return true;
   const double reach = context_.config.escape_max_distance_m;
   if (const auto way = find_escape(context_.grid, context_.space, given, reach)) {
@@ -115,114 +124,9 @@ bool PlanQuery::settle_targets() {
   return true;
 }
 
-bool PlanQuery::order_targets() {
-  result_.via_order.resize(request_.via.size());
-  std::iota(result_.via_order.begin(), result_.via_order.end(), std::size_t{0});
-  if (request_.via_order == ViaOrder::kGiven || request_.via.size() < 2) return true;
-  std::vector<TPoint2D> places{start_};
-  places.insert(places.end(), targets_.begin(), targets_.end());
-  const auto& g = context_.grid.geometry;
-  std::vector<std::vector<double>> cost(places.size(), std::vector<double>(places.size(), 0.0));
-  CostToGo ways;  // from all other places to one, at once
-  for (std::size_t i = 0; i + 1 < places.size(); ++i) {
-    const maps::Cell to = g.cell_at(places[i]);
-    ways.compute(context_.search_grid, {to}, context_.config.astar.soft_cost_weight);
-    for (std::size_t j = i + 1; j < places.size(); ++j) {
-      const auto way = ways.way_from(g.cell_at(places[j]));
-      const double length = way.cells.size() == 1 ? maps::distance(places[i], places[j])
-                            : way.cells.empty()   ? std::numeric_limits<double>::infinity()
-                                                  : way.length_m;
-      cost[i][j] = cost[j][i] = length;
-    }
-  }
-  const std::vector<TPoint2D> as_given = targets_;
-  result_.via_order.clear();
-  for (const std::size_t place : shortest_order(cost)) {
-    targets_[result_.via_order.size()] = as_given[place - 1];
-    result_.via_order.push_back(place - 1);
-  }
-  return true;  // what cannot be reached is refused leg by leg
+bool PlanQuery::is_reference() const {
+  return context_.config.spline.mode == "reference" && !context_.footprint;
 }
-
-bool PlanQuery::search_legs() {
-  TPoint2D from = start_;
-  problem_.polyline.points.push_back(from);
-  for (std::size_t i = 0; i < targets_.size(); ++i) {
-    if (!search_leg(from, targets_[i], name_of_target(i))) return false;
-    from = targets_[i];
-    problem_.pinned.push_back(problem_.polyline.points.size() - 1);
-  }
-  return true;
-}
-
-bool PlanQuery::search_leg(const TPoint2D& from, const TPoint2D& to, const std::string& name) {
-  const auto& g = context_.grid.geometry;
-  // Theta* asks for the shortest way: no detours for soft costs.
-  const double soft_cost_weight =
-      context_.kind == PlannerKind::kThetaStar ? 0.0 : context_.config.astar.soft_cost_weight;
-  std::optional<SearchGrid> narrowed;  // with moves closed that prove narrower than the rover
-  constexpr int kMostClosed = 50;
-  for (int attempt = 0; attempt <= kMostClosed; ++attempt) {
-    const SearchGrid& cells = narrowed ? *narrowed : context_.search_grid;
-    const GridSearchResult found = find_way(cells, g.cell_at(from), g.cell_at(to));
-    result_.expanded_cells += found.expanded_cells;
-    if (!found.found) break;
-    Path leg;
-    append(leg.points, from);
-    for (const maps::Cell cell : found.cells) append(leg.points, g.center_of(cell));
-    append(leg.points, to);
-    double searched_m = found.length_m;
-    if (context_.kind != PlannerKind::kAStar && context_.kind != PlannerKind::kThetaStar) {
-      if (!sample_leg(from, to, name, leg)) return false;
-      searched_m = length_m(leg);
-    }
-    const ShortcutResult straight = shortcut(context_.space, leg, soft_cost_weight);
-    if (straight.ok) {
-      for (const TPoint2D& p : leg.points) append(result_.grid_path.points, p);
-      for (const TPoint2D& p : straight.path.points) append(problem_.polyline.points, p);
-      result_.search_length_m += searched_m;
-      return true;
-    }
-    if (!narrowed) narrowed = context_.search_grid;
-    narrowed->close_move(g.cell_at(leg.points[straight.blocked]),
-                         g.cell_at(leg.points[straight.blocked + 1]));
-  }
-  return refuse_goal(
-      PlanStatus::kNoPath, to,
-      "No way wide enough for robot_radius_m = " + meters(context_.inflation.robot_radius_m) +
-          " leads from " + text_of(from) + " to the " + name + " " + text_of(to) + ".");
-}
-
-GridSearchResult PlanQuery::find_way(const SearchGrid& cells, maps::Cell from, maps::Cell to) {
-  if (context_.kind != PlannerKind::kThetaStar) {
-    return search_.find(cells, from, to,
-                        {.soft_cost = context_.config.astar.soft_cost_weight,
-                         .heuristic = context_.config.astar.heuristic_weight});
-  }
-  // Between cell centres a line may come nearer to an obstacle than the centres do.
-  const auto& g = context_.grid.geometry;
-  return any_angle_.find(cells, from, to, [&](maps::Cell a, maps::Cell b) {
-    return context_.space.is_free(g.center_of(a), g.center_of(b));
-  });
-}
-
-bool PlanQuery::sample_leg(const TPoint2D& from, const TPoint2D& to, const std::string& name,
-                           Path& leg) {
-  if (maps::distance(from, to) <= kSamePointM) return true;
-  const SamplingResult sampled =
-      sample_path(context_.space, context_.kind, from, to, context_.config.ompl, request_.seed);
-  result_.expanded_cells += sampled.states;
-  if (!sampled.found) {
-    return refuse(PlanStatus::kTimeout, to,
-                  std::string(to_string(context_.kind)) + " found no way to the " + name + " " +
-                      text_of(to) + " within its iterations, although one exists; raise " +
-                      to_string(context_.kind) + "_iterations or use astar.");
-  }
-  leg = sampled.path;
-  return true;
-}
-
-bool PlanQuery::is_reference() const { return context_.config.spline.mode == "reference"; }
 
 void PlanQuery::reference_path() {
   std::vector<TPoint2D> cells;  // in cells, the smoothing factor's unit
@@ -247,6 +151,7 @@ void PlanQuery::reference_path() {
 
 void PlanQuery::smooth_path() {
   if (problem_.polyline.points.size() < 2) return;
+  if (context_.footprint) return straight_path();
   if (is_reference()) return reference_path();
   const auto wanted = [&](bool given, double heading, const TPoint2D& a, const TPoint2D& b) {
     const double along = std::atan2(b.y - a.y, b.x - a.x);
@@ -263,9 +168,18 @@ void PlanQuery::smooth_path() {
   pieces_ = smooth(context_.space, problem_, context_.config.spline);
 }
 
+/// The rectangle's way is not rounded: it was checked as it is, turns on the spot and straight
+/// legs.
+void PlanQuery::straight_path() {
+  const auto& points = problem_.polyline.points;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    pieces_.push_back({.curve = CubicBSpline::uniform({points[i - 1], points[i]})});
+  }
+}
+
 void PlanQuery::time_path() {
   time_pieces(pieces_);
-  if (is_reference() || is_safe(pieces_, result_.trajectory)) return;
+  if (context_.footprint || is_reference() || is_safe(pieces_, result_.trajectory)) return;
   // Never expected; but a plan that fails its own check is not handed out.
   SplineConfig straight = context_.config.spline;
   straight.smooth = false;
@@ -314,14 +228,28 @@ bool PlanQuery::is_safe(const std::vector<PathPiece>& pieces, const Trajectory& 
   return true;
 }
 
+bool PlanQuery::footprint_is_safe() {
+  if (context_.inflation.map_mode == maps::MapMode::kEverything) return true;
+  CheckOptions options;
+  options.footprint = {context_.robot.footprint_length_m, context_.robot.footprint_width_m};
+  options.limits = limits_of(context_.robot, context_.config.timing);
+  options.unknown_is_blocked = context_.inflation.map_mode == maps::MapMode::kKnownFree;
+  options.clearance_looked_m = kFootprintClearanceReportedM;
+  const TrajectoryReport report = check(result_.trajectory, context_.grid, options);
+  result_.min_clearance_m = report.min_clearance_m;
+  return report.unsafe_samples == 0 || refuse_unfound(targets_.back(), "goal");
+}
+
 void PlanQuery::measure() {
   result_.path_length_m = length_m(result_.trajectory);
   Path driven;
   driven.points.reserve(result_.trajectory.points.size());
   for (const auto& p : result_.trajectory.points)
     driven.points.push_back(maps::position_of(p.pose));
-  result_.min_clearance_m =
-      context_.space.clearance(driven, kClearanceReportedM) - context_.inflation.robot_radius_m;
+  if (!context_.footprint) {  // else the check has measured it
+    result_.min_clearance_m =
+        context_.space.clearance(driven, kClearanceReportedM) - context_.inflation.robot_radius_m;
+  }
   if (result_.escape) {
     result_.message +=
         "The start is nearer to an obstacle than robot_radius_m or on unknown "
@@ -353,50 +281,6 @@ void PlanQuery::report_cuts() {
 
 void PlanQuery::begin(PlanStage stage) const {
   if (request_.on_stage) request_.on_stage(stage);
-}
-
-bool PlanQuery::refuse(PlanStatus status, const TPoint2D& point, std::string message) {
-  const std::size_t expanded = result_.expanded_cells;
-  result_ = PlanResult();
-  result_.status = status;
-  result_.expanded_cells = expanded;
-  result_.offending_point = point;
-  result_.message = std::move(message);
-  return false;
-}
-
-bool PlanQuery::refuse_goal(PlanStatus status, const TPoint2D& point, std::string message) {
-  refuse(status, point, std::move(message));
-  const auto& g = context_.grid.geometry;
-  if (const auto cell = search_.nearest_reachable(context_.search_grid, g.cell_at(start_), point)) {
-    result_.nearest_reachable_goal = g.center_of(*cell);
-  }
-  result_.message += nearest_hint(result_.nearest_reachable_goal);
-  return false;
-}
-
-std::string PlanQuery::why_not_free(const TPoint2D& point) const {
-  const maps::Cell cell = context_.grid.geometry.cell_at(point);
-  if (maps::OccupancyGrid::is_occupied(context_.grid.at(cell))) return " lies inside an obstacle";
-  const double radius = context_.inflation.robot_radius_m;
-  const double clearance = context_.space.clearance(point, radius);
-  if (clearance < radius) {
-    return " is " + meters(clearance) +
-           " from an obstacle, nearer than robot_radius_m = " + meters(radius);
-  }
-  return " lies on unknown ground, which map mode 0 does not enter (modes 1 and 2 do)";
-}
-
-std::string PlanQuery::map_extent() const {
-  const auto& g = context_.grid.geometry;
-  return extent_of(g.origin,
-                   {g.origin.x + g.width * g.resolution_m, g.origin.y + g.height * g.resolution_m});
-}
-
-std::string PlanQuery::name_of_target(std::size_t index) const {
-  if (index == request_.via.size()) return "goal";
-  const std::size_t given = result_.via_order.empty() ? index : result_.via_order[index];
-  return "via point " + std::to_string(given + 1);
 }
 
 }  // namespace rovigo::planning

@@ -7,11 +7,15 @@
 
 #include "planning/any_angle_search.h"
 #include "planning/astar.h"
+#include "planning/footprint.h"
 #include "planning/free_space.h"
 #include "planning/planner.h"
 #include "planning/smoother.h"
 
 namespace rovigo::planning {
+
+/// Path points this near to each other are one.
+inline constexpr double kSamePointM = 1e-6;
 
 /// What all queries on one map share; prepared once by Planner, not changed afterwards.
 struct PlanningContext {
@@ -23,6 +27,8 @@ struct PlanningContext {
   maps::Costmap costmap;
   SearchGrid search_grid;
   FreeSpace space;
+  /// Where the rectangle counts; `inflation` then has its inscribed radius.
+  std::optional<FootprintSpace> footprint;
 
   /// Throws maps::InputError for settings out of range.
   PlanningContext(const maps::OccupancyGrid& grid, const maps::RobotModel& robot,
@@ -55,7 +61,12 @@ class PlanQuery {
   bool search_leg(const TPoint2D& from, const TPoint2D& to, const std::string& name);
   GridSearchResult find_way(const SearchGrid& cells, maps::Cell from, maps::Cell to);
   bool sample_leg(const TPoint2D& from, const TPoint2D& to, const std::string& name, Path& leg);
+  bool footprint_leg(const std::string& name, Path& leg);
+  bool fits(const TPoint2D& at, std::optional<double> heading_rad) const;
+  bool refuse_unfound(const TPoint2D& to, const std::string& name);
   void smooth_path();
+  void straight_path();
+  bool footprint_is_safe();
   void reference_path();
   void time_path();
   void measure();
@@ -81,6 +92,7 @@ class PlanQuery {
   std::vector<TPoint2D> escape_;   ///< from the start given to start_, when they differ
   TPoint2D start_;                 ///< where free driving begins
   std::vector<TPoint2D> targets_;  ///< via points and goal, each free
+  std::optional<double> heading_;  ///< rectangle only: where the leg before ended
   SmoothingProblem problem_;
   std::vector<PathPiece> pieces_;
 };

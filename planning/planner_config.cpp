@@ -171,6 +171,13 @@ void PlannerConfig::describe(maps::SettingsVisitor& v) {
           .choices = {"astar", "thetastar", "rrtconnect", "rrtstar", "bitstar", "prmstar"},
           .advanced = false},
          planner);
+  v.text(
+      {.name = "footprint",
+       .help = "circle keeps robot_radius_m, so that the rover may turn anywhere; rectangle lets "
+               "sampling planners through gaps only the oriented footprint fits in. Such plans "
+               "are to be looked at: drive refuses them.",
+       .choices = {"circle", "rectangle"}},
+      footprint);
   v.real({.name = "escape_max_distance_m",
           .help = "A start nearer to an obstacle than the robot's radius, or on unknown ground, "
                   "may be this far from free ground.",
@@ -183,11 +190,19 @@ void PlannerConfig::describe(maps::SettingsVisitor& v) {
   timing.describe(v);
 }
 
+bool plans_with_rectangle(const PlannerConfig& config) { return config.footprint == "rectangle"; }
+
 void validate(const PlannerConfig& config) {
   maps::validate(config);
   if (config.astar.connectivity != 4 && config.astar.connectivity != 8) {
     throw maps::InputError("connectivity = " + std::to_string(config.astar.connectivity) +
                            " must be 4 or 8");
+  }
+  if (plans_with_rectangle(config) &&
+      (config.planner == "astar" || config.planner == "thetastar")) {
+    throw maps::InputError("planning.footprint = rectangle needs a sampling planner, not " +
+                           config.planner +
+                           ": set planner to rrtconnect, rrtstar, bitstar or prmstar");
   }
 }
 

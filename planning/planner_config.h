@@ -63,6 +63,7 @@ struct TimingConfig {
 
 struct PlannerConfig {
   std::string planner = "astar";       ///< text form of PlannerKind
+  std::string footprint = "circle";    ///< or rectangle, for sampling planners: see footprint.h
   double escape_max_distance_m = 1.0;  ///< how far a start in the band may be from free ground
   AStarConfig astar;
   OmplConfig ompl;
@@ -70,6 +71,9 @@ struct PlannerConfig {
   TimingConfig timing;
   void describe(maps::SettingsVisitor& v);
 };
+
+/// Plans with the rover's rectangle instead of the circle it turns in?
+bool plans_with_rectangle(const PlannerConfig& config);
 
 /// Ranges plus what ranges cannot say. Throws maps::InputError naming every bad field.
 void validate(const PlannerConfig& config);

@@ -4,6 +4,12 @@
 
 namespace rovigo::planning {
 
+std::string meters(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f m", value);
+  return text;
+}
+
 std::string text_of(const TPoint2D& point) {
   char text[96];
   std::snprintf(text, sizeof text, "(%.2f, %.2f) m", point.x, point.y);

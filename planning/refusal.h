@@ -9,6 +9,9 @@
 
 namespace rovigo::planning {
 
+/// `0.30 m`.
+std::string meters(double value);
+
 /// `(1.25, -0.40) m`.
 std::string text_of(const TPoint2D& point);
 

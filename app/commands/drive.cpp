@@ -122,6 +122,12 @@ int run_drive(const DriveOptions& options) {
   const Console console(options.json);
   const RovigoConfig config =
       with_route_options(load_config(options.config, options.set), options.route);
+  if (planning::plans_with_rectangle(config.planning)) {
+    throw maps::InputError(
+        "planning.footprint = rectangle plans nearer to obstacles than a drive's errors allow: "
+        "look "
+        "at it with `rovigo plan`, drive with planning.footprint = circle");
+  }
   const maps::SavedMap map = open_planning_map(options.map, console);
   planning::PlanRequest request = plan_request(options.route, map);
   request.seed = options.seed;

@@ -8,10 +8,13 @@
 #include "app/query_batch.h"
 #include "app/report/drive_report.h"
 #include "app/report/map_picture.h"
+#include "planning/footprint.h"
 
 namespace rovigo::app {
 
 namespace {
+
+constexpr double kOutlineSpacingM = 0.25;  // of footprints in pictures
 
 int exit_code(planning::PlanStatus status) {
   return status == planning::PlanStatus::kOk ? kDone : kDidNotSucceed;
@@ -95,6 +98,10 @@ int run_plan(const PlanOptions& options) {
   if (options.image) {
     MapPictureLayers layers = plan_layers(request, plan.result);
     layers.costmap = planner.costmap();
+    if (planning::plans_with_rectangle(config.planning)) {
+      layers.footprints = planning::footprint_outlines(
+          plan.result.trajectory, planning::footprint_of(config.robot), kOutlineSpacingM);
+    }
     layers.title = plan_message(plan.result);
     write_map_picture(*options.image, map.grid, layers);
   }

@@ -45,7 +45,8 @@ void draw_layers(Canvas& canvas, const MapPictureLayers& layers) {
               kKeyframeColor, 1);
     draw_disc(image, at, 2, kKeyframeColor);
   }
-  draw_path(canvas, layers.planned_path, kPlannedColor, 6);
+  for (const auto& outline : layers.footprints) draw_path(canvas, outline, kPlannedColor, 1);
+  draw_path(canvas, layers.planned_path, kPlannedColor, layers.footprints.empty() ? 6 : 2);
   draw_path(canvas, layers.estimated_path, kEstimatedColor, 2);  // seen where it leaves the truth
   draw_path(canvas, layers.driven_path, kDrivenColor, 2);
   for (const TPoint2D& via : layers.via_points) {
@@ -81,7 +82,8 @@ std::vector<LegendEntry> legend_of(const MapPictureLayers& layers) {
   add(layers.start.has_value(), {"start", Mark::kDisc, kStartColor});
   add(layers.goal.has_value(), {"goal", Mark::kTarget, kGoalColor});
   add(!layers.via_points.empty(), {"via point", Mark::kDiamond, kPlannedColor});
-  add(!layers.planned_path.empty(), {"planned path", Mark::kLine, kPlannedColor, 6});
+  add(!layers.planned_path.empty(),
+      {"planned path", Mark::kLine, kPlannedColor, layers.footprints.empty() ? 6 : 2});
   add(!layers.driven_path.empty(), {"driven path", Mark::kLine, kDrivenColor, 2});
   add(!layers.estimated_path.empty(), {"estimated path", Mark::kLine, kEstimatedColor, 2});
   add(!layers.keyframes.empty(), {"keyframe", Mark::kTick, kKeyframeColor});

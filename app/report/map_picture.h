@@ -22,6 +22,7 @@ struct MapPictureLayers {
   std::optional<TPose2D> goal;
   bool goal_heading_given = false;  ///< draws the goal's arrow
   std::vector<TPoint2D> via_points;
+  std::vector<std::vector<TPoint2D>> footprints;  ///< outlines of the rover along its path
   std::vector<TPose2D> keyframes;
   std::optional<maps::Costmap> costmap;  ///< same geometry as the grid; its lethal band is tinted
   std::string title = {};                ///< one short line above the picture; may be empty
