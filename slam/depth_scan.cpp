@@ -7,8 +7,10 @@ namespace rovigo::slam {
 
 namespace {
 
-constexpr int kColumns = 160;         // about so many samples a row, whatever the image's size
-constexpr float kUprightRay = 0.05f;  // rays nearly straight up or down say nothing of the floor
+constexpr int kColumns = 160;          // about so many samples a row, whatever the image's size
+constexpr float kUprightRay = 0.05f;   // rays nearly straight up or down say nothing of the floor
+constexpr float kFloorM = 0.03f;       // returns from below are the floor's
+constexpr float kSilentReachM = 3.0f;  // what stands nearer gives a return
 
 }  // namespace
 
@@ -72,7 +74,29 @@ DepthScan DepthScanner::scan(const Samples& samples, double unit_m, const Se3& l
                         sigma_at_1m * z * z * across, false});
   }
   if (fine_from_ >= samples_.size()) out.fine_from = static_cast<int>(out.rays.size());
+  add_silent(samples, unit, rotation, out);
   return out;
+}
+
+/// From the bottom of the image up: the floor nearby gives returns; silence right beyond it is
+/// floor as well. Where something else came first, or nothing at all, silence says nothing.
+void DepthScanner::add_silent(const Samples& samples, float unit_m, const Eigen::Matrix3f& rotation,
+                              DepthScan& scan) const {
+  std::vector<bool> on_floor(static_cast<std::size_t>(samples.cols), false);
+  for (std::size_t i = samples_.size(); i > fine_from_; --i) {
+    const Sample& s = samples_[i - 1];
+    const Eigen::Vector3f d = rotation * s.ray;
+    const auto column = static_cast<std::size_t>(s.u);
+    const float z = unit_m * samples.depths[i - 1];
+    if (z > 0.0f) {
+      on_floor[column] = scan.camera.z() + z * d.z() < kFloorM;
+    } else if (on_floor[column] && d.z() < 0.0f) {
+      const float across = std::sqrt(d.x() * d.x() + d.y() * d.y());
+      if (across < kUprightRay) continue;
+      scan.silent.push_back(
+          {d.x() / across, d.y() / across, d.z() / across, kSilentReachM, 0.0f, false});
+    }
+  }
 }
 
 }  // namespace rovigo::slam

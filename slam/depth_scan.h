@@ -27,6 +27,9 @@ struct DepthScan {
   int fine_from = 0;  ///< rays from here on lie between the others: needed only far away
   float columns_per_rad = 0.0f, rows_per_rad = 0.0f;  ///< of all rays
   std::vector<ScanRay> rays;
+  /// Rays without a return, on their way to ground that is too grazing for one: nothing stood in
+  /// their way as far as their range.
+  std::vector<ScanRay> silent;
 };
 
 /// Samples depth images every few pixels, rows twice as densely as columns: tops are thin. One ray
@@ -55,6 +58,8 @@ class DepthScanner {
     Eigen::Vector3f ray = Eigen::Vector3f::Zero();  ///< camera frame, z = 1
   };
   void lay_samples(int cols, int rows);
+  void add_silent(const Samples& samples, float unit_m, const Eigen::Matrix3f& rotation,
+                  DepthScan& scan) const;
 
   CameraModel camera_;
   DepthConfig depth_;

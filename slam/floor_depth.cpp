@@ -10,7 +10,10 @@ namespace {
 
 constexpr double kFlatM = 0.025;  // a return this near to the plane may be the floor's
 constexpr double kFarthestM = 3.0;
-constexpr double kLeastFall = 0.05;   // of a ray, for the floor to be met before the walls
+constexpr double kLeastFall = 0.05;  // of a ray, for the floor to be met before the walls
+// Of a frame: what is read more evenly than this is right on average. Matt floors are at 0.002,
+// mirroring ones at 0.03.
+constexpr double kUneven = 0.008;
 constexpr double kPlaneShare = 0.01;  // error of a depth taken from the plane: mount, unevenness
 constexpr double kUpShare = 0.15;     // how far up the floor a pixel's surface is followed
 constexpr int kRasterPx = 8;          // of the readings that roughness is measured by
@@ -31,11 +34,12 @@ FloorDepth::FloorDepth(const CameraFrame& frame, const CameraModel& camera,
                        const DepthConfig& config, const Se3& level_from_camera)
     : frame_(frame), camera_(camera), config_(config), level_from_camera_(level_from_camera) {
   read_floor();
+  roughness_ = measure_roughness();
 }
 
 double FloorDepth::at(const Eigen::Vector2d& raw_pixel) const {
   const double measured = frame_.depth_at(raw_pixel, config_);
-  if (!(measured > 0.0)) return measured;
+  if (roughness_ < kUneven || !(measured > 0.0)) return measured;
   const double plane = plane_at(raw_pixel);
   if (plane == 0.0 || std::abs(height_m(measured, plane)) > kFlatM) return measured;
   if (!rises_as_floor(raw_pixel, plane)) return measured;
@@ -97,7 +101,7 @@ std::optional<double> FloorDepth::roughness_around(const Eigen::Vector2d& raw_pi
   return kSigmaPerMad * median(near);
 }
 
-double FloorDepth::roughness() const {
+double FloorDepth::measure_roughness() const {
   std::vector<float> steps;
   for (int r = 0; r < rows_; ++r) {
     for (int c = kAround; c < columns_; ++c) {

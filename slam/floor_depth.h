@@ -18,12 +18,13 @@ class FloorDepth {
              const Se3& level_from_camera);
 
   /// The depth at a raw pixel, in metres: as measured off the floor; on it drawn towards the plane,
-  /// by as much as the floor around it is read worse than the plane is known.
+  /// by as much as the floor around it is read worse than the plane is known, in a frame that reads
+  /// its floor unevenly.
   double at(const Eigen::Vector2d& raw_pixel) const;
 
   /// How unevenly this frame reads its floor, as a share of the depth (1 sigma); 0 where it reads
   /// too little.
-  double roughness() const;
+  double roughness() const { return roughness_; }
 
  private:
   double plane_at(const Eigen::Vector2d& raw_pixel) const;
@@ -31,6 +32,7 @@ class FloorDepth {
   bool rises_as_floor(const Eigen::Vector2d& raw_pixel, double plane_m) const;
   std::optional<double> roughness_around(const Eigen::Vector2d& raw_pixel) const;
   void read_floor();
+  double measure_roughness() const;
 
   const CameraFrame& frame_;
   const CameraModel& camera_;
@@ -39,6 +41,7 @@ class FloorDepth {
   int columns_ = 0, rows_ = 0;
   /// Of every so many pixels: depth as read over that of the plane, 0 off the floor.
   std::vector<float> ratios_;
+  double roughness_ = 0.0;
 };
 
 }  // namespace rovigo::slam

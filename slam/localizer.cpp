@@ -53,10 +53,18 @@ void Localizer::Impl::lose() {
   finder.clear();
 }
 
-/// A guess was wrong: nobody carried the rover, so what was seen on the way stays true.
+/// A guess seems wrong: nobody carried the rover, so what was seen on the way stays true. It is
+/// given up for another place only; contradictions add up until there is one.
 void Localizer::Impl::drop_guess(double time_s) {
-  finder.refute(believed(time_s), odom_from_base(time_s));
-  believe_nothing();
+  const Se3 here = believed(time_s), odom = odom_from_base(time_s);
+  finder.refute(here, odom);
+  if (!finder.is_best(here, odom)) {
+    believe_nothing();
+    return;
+  }
+  evidence.agreeing_frames = 0;
+  misses = 0;
+  contradicted_since_s.reset();
 }
 
 void Localizer::Impl::note_interval(double time_s) {
@@ -101,8 +109,9 @@ void Localizer::Impl::on_frame(const CameraFrame& frame, FeatureSet features) {
   const bool just_lost = believed_before && state == State::kSearching;  // says so for a frame
   const bool spot_check = frames % kSpotCheckEvery == 0;
   if (!just_lost && (state != State::kTracking || misses > 0 || spot_check)) {
-    look_everywhere(view);
+    const bool recognized = look_everywhere(view);
     judge_places(view, is_new);
+    if (state != State::kSearching && motion.planar()) look_beside(view, recognized);
     weigh_support(view.frame.time_s);
   }
   const MotionPrediction now = motion.predict(view.frame.time_s);

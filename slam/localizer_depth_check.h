@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "slam/camera_frame.h"
+#include "slam/grid_match.h"
 #include "slam/landmark_map.h"
 
 namespace rovigo::slam {
@@ -21,8 +22,10 @@ struct DepthAgreement {
 };
 
 /// `landmarks`: those to ask about; the ones outside the view are passed over, and so are, in a map
-/// whose floor is known (`on_floor`), those on the floor or at the ceiling.
+/// whose floor is known (`on_floor`), those on the floor or at the ceiling. With `walls` (null: not
+/// known) a landmark that the map itself has behind a wall is not expected to be seen.
 DepthAgreement depth_agreement(const LandmarkMap& map, const std::vector<int>& landmarks,
-                               const CameraFrame& frame, const Se3& map_from_base, bool on_floor);
+                               const CameraFrame& frame, const Se3& map_from_base, bool on_floor,
+                               const SignedDistanceField* walls = nullptr);
 
 }  // namespace rovigo::slam

@@ -7,7 +7,8 @@ namespace rovigo::slam {
 
 /// All there is to say about the current pose.
 struct LocalizerEvidence {
-  int inliers = 0;             ///< of the last frame that matched, on what tells places apart
+  int inliers = 0;             ///< of frames that matched, earlier ones fading; on what tells
+                               ///< places apart
   double matched_share = 0.0;  ///< of the landmarks at their depth, how many matched
   double depth_share = 1.0;    ///< DepthAgreement::share(), with enough to judge
   double scan_share = 1.0;     ///< of the local scan, how much fits the grid

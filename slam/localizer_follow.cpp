@@ -1,5 +1,7 @@
 // Following a place from frame to frame: the view against the map around the pose believed.
 
+#include <algorithm>
+
 #include "slam/localizer_impl.h"
 
 namespace rovigo::slam {
@@ -11,6 +13,7 @@ constexpr int kLostAfterMisses = 3;       // and so many frames
 constexpr double kReconfirmAfterS = 0.5;  // blind for longer, the rover may be anywhere
 constexpr double kHeldScanShare = 0.75;   // of one view, to hold a pose by it alone
 constexpr std::size_t kEnoughScan = 40;   // points of it
+constexpr double kKeptInliers = 0.98;     // a frame, rounded down; half is left after a second
 
 }  // namespace
 
@@ -61,7 +64,10 @@ void Localizer::Impl::note_agreement(double time_s, int inliers, const ViewCheck
     evidence.agreeing_frames = 0;
   }
   ++evidence.agreeing_frames;
-  evidence.inliers = inliers;
+  inliers_now = inliers;
+  // In a view that goes on, what matched a moment ago still speaks for the place.
+  const int kept = broken ? 0 : static_cast<int>(kKeptInliers * evidence.inliers);
+  evidence.inliers = std::max(inliers, kept);
   evidence.depth_share = seen.depth_share;
   evidence.matched_share = seen.matched_share;
   last_fix_s = time_s;
@@ -79,9 +85,10 @@ void Localizer::Impl::miss(const SeenView& view, const std::vector<int>& local_l
   ++misses;
   doubt = view.shows_plenty();
   // In an unbroken view nobody has carried the rover: the map is old, or never saw this side.
+  // Few features are no match, and no contradiction either; walls where there should be none are.
   const bool contradicted =
-      (broken || !was_sure) && doubt &&
-      (checker.map_knows_view(pose) ||
+      (broken || !was_sure) &&
+      ((doubt && checker.map_knows_view(pose)) ||
        checker.check(view, local_landmarks, pose, SeenView::kPlenty).contradicts);
   if (contradicted && !contradicted_since_s) contradicted_since_s = time_s;
   const bool carried_off = contradicted_since_s && misses >= kLostAfterMisses &&

@@ -11,6 +11,7 @@
 #include "slam/relocalizer.h"
 #include "slam/view_check.h"
 #include "slam/view_continuity.h"
+#include "slam/view_slide.h"
 
 namespace rovigo::slam {
 
@@ -29,15 +30,19 @@ struct Localizer::Impl {
         finder(motion.planar() ? grid : maps::OccupancyGrid{}, std::move(depths)),
         relocalizer(map),
         checker(map, finder.has_grid() ? &finder.field() : nullptr,
-                relocalizer.repeated_landmarks(map), motion.planar()) {}
+                relocalizer.repeated_landmarks(map), motion.planar()),
+        slide(map) {}
 
   void expect_near(const PosePrior& given);
   void begin(double time_s);
   void on_frame(const mrpt::obs::CObservation3DRangeScan& scan);
   void on_frame(const CameraFrame& frame, FeatureSet features);
   void note_interval(double time_s);
-  void look_everywhere(const SeenView& view);
+  bool look_everywhere(const SeenView& view);
   void judge_places(const SeenView& view, bool is_new);
+  void recognize(const SeenView& view, const Se3& map_from_base, double weight);
+  void look_beside(const SeenView& view, bool recognized);
+  void step_aside(double time_s, const Se3& map_from_base);
   void adopt(double time_s, const Se3& map_from_base);
   bool hold_by_scan(const SeenView& view, const std::vector<int>& local_landmarks);
   void follow(const SeenView& view);
@@ -65,6 +70,7 @@ struct Localizer::Impl {
   PlaceFinder finder;
   Relocalizer relocalizer;
   ViewChecker checker;
+  ViewSlide slide;
   std::optional<PoseRegion> prior;
   double prior_sigma_m = 0.0, prior_sigma_rad = 0.0;
 
@@ -74,6 +80,7 @@ struct Localizer::Impl {
   std::vector<int> tracked;
   LocalizerEvidence evidence;
   int frames = 0;
+  int inliers_now = 0;    ///< of the newest frame; what earlier ones had fades in the evidence
   int misses = 0;         ///< frames in a row that matched nothing
   bool broken = false;    ///< the view has jumped since a frame last agreed
   bool was_sure = false;  ///< of this place, before the camera was blind

@@ -1,6 +1,7 @@
 // Looking for the place: what the whole map says about the view.
 
 #include <algorithm>
+#include <cmath>
 
 #include "slam/localizer_impl.h"
 
@@ -25,11 +26,26 @@ constexpr double kMostRival = 0.2;  // share of the votes that another place may
 constexpr double kStillScanShare = 0.5;
 constexpr double kSureRecognition = 0.9;  // where views cannot be added up
 constexpr double kFullWeightInliers = 40.0;
+// Of places beside one another, by the features that fit: a sixth fewer leaves a quarter.
+constexpr double kLikenessPower = 8.0, kLeastLikeness = 0.05;
+constexpr double kSurelyBetter = 1.15, kNearlyAsGood = 0.85;  // one brick aside
+constexpr int kSureStep = 25;                                 // features; by chance a dozen meet
+
+double likeness(int features, int best) {
+  return std::pow(static_cast<double>(features) / best, kLikenessPower);
+}
+
+Se3 shifted(Se3 map_from_base, const Eigen::Vector2d& shift_map) {
+  map_from_base.translation.head<2>() += shift_map;
+  return map_from_base;
+}
 
 }  // namespace
 
-/// Compares the view with the whole map; what geometry accepts speaks for a place.
-void Localizer::Impl::look_everywhere(const SeenView& view) {
+/// Compares the view with the whole map; what geometry accepts speaks for a place. True if anything
+/// did.
+bool Localizer::Impl::look_everywhere(const SeenView& view) {
+  bool recognized = false;
   const PlaceMatchConfig place{.min_inliers = config.localizer.relocalization_inliers,
                                .seed = static_cast<std::uint64_t>(frames)};
   const int tries = state == State::kSearching ? kTriesSearching : kTriesConfirming;
@@ -42,9 +58,59 @@ void Localizer::Impl::look_everywhere(const SeenView& view) {
     const auto landmarks = map.landmarks_of({r.keyframe});
     const ViewCheck seen = checker.check(view, landmarks, solution.map_from_base, solution.inliers);
     if (seen.contradicts) continue;
-    finder.recognize(solution.map_from_base, odom_from_base(view.frame.time_s),
-                     std::min(1.0, clear / kFullWeightInliers));
+    recognize(view, solution.map_from_base, std::min(1.0, clear / kFullWeightInliers));
+    recognized = true;
   }
+  return recognized;
+}
+
+/// Walls repeat themselves: what fits the view about as well beside the place shares in it.
+void Localizer::Impl::recognize(const SeenView& view, const Se3& map_from_base, double weight) {
+  const Se3 odom = odom_from_base(view.frame.time_s);
+  SlideSpectrum spectrum;  // without a floor, places beside are not at the same height either
+  if (motion.planar()) spectrum = slide.around(view.features, map_from_base);
+  if (spectrum.best() < kMinTelling) {
+    finder.recognize(map_from_base, odom, weight);
+    return;
+  }
+  const double here = likeness(spectrum.here, spectrum.best());
+  if (here >= kLeastLikeness) finder.recognize(map_from_base, odom, weight * here);
+  for (const Slide& s : spectrum.elsewhere) {
+    const double there = likeness(s.features, spectrum.best());
+    if (there < kLeastLikeness) continue;
+    finder.recognize(shifted(map_from_base, s.shift_map), odom, weight * there);
+  }
+}
+
+/// Is the view better explained a brick or a panel further? A step aside is taken at once; what is
+/// farther off becomes a rival that shape has to refute.
+void Localizer::Impl::look_beside(const SeenView& view, bool recognized) {
+  const double time_s = view.frame.time_s;
+  const Se3 here = believed(time_s);
+  const SlideSpectrum spectrum = slide.around(view.features, here);
+  if (spectrum.best() < kMinTelling || spectrum.elsewhere.empty()) return;
+  bool has_rival = false;
+  for (const Slide& s : spectrum.elsewhere) {
+    if (s.shift_map.norm() >= kSamePlaceM) {
+      has_rival |= likeness(s.features, spectrum.best()) >= kLeastLikeness;
+    } else if (s.features > kSurelyBetter * spectrum.here && s.features >= kSureStep) {
+      step_aside(time_s, shifted(here, s.shift_map));
+      return;
+    } else if (s.features > kNearlyAsGood * spectrum.here) {
+      evidence.agreeing_frames = 0;  // it could be either
+    }
+  }
+  if (has_rival && !recognized && misses == 0) {
+    recognize(view, here, std::min(1.0, spectrum.best() / kFullWeightInliers));
+  }
+}
+
+/// The same room, but matched one brick too far.
+void Localizer::Impl::step_aside(double time_s, const Se3& map_from_base) {
+  motion.place(time_s, map_from_base, kFixSigmaM, kFixSigmaRad);
+  state = State::kConfirming;
+  evidence.agreeing_frames = 0;
+  tracked.clear();
 }
 
 /// Goes to the place that most speaks for, if it is not where the rover is believed to be.
@@ -72,7 +138,7 @@ void Localizer::Impl::judge_places(const SeenView& view, bool is_new) {
 
 /// Views that match say more than a little more of shape elsewhere.
 bool Localizer::Impl::matches_here() const {
-  return state == State::kConfirming && misses == 0 && evidence.inliers >= kMinTelling;
+  return state == State::kConfirming && misses == 0 && inliers_now >= kMinTelling;
 }
 
 void Localizer::Impl::adopt(double time_s, const Se3& map_from_base) {
@@ -81,9 +147,11 @@ void Localizer::Impl::adopt(double time_s, const Se3& map_from_base) {
   state = State::kConfirming;
   was_sure = false;
   misses = 0;
+  broken = false;  // before this: the place is judged by what was seen since
   doubt = false;
   contradicted_since_s.reset();
   evidence = {};
+  inliers_now = 0;
   last_fix_s = time_s;
   tracked.clear();
 }

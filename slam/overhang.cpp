@@ -14,6 +14,7 @@ constexpr double kReachM = 1.0;   // from an edge: half of the largest table, an
 constexpr int kDirections = 32;   // asked around a cell
 constexpr int kWidestGap = 17;    // of them, between neighbouring edges: half of them, and noise
 constexpr int kThickestEdge = 3;  // bands
+constexpr int kWall = 8;          // and of a wall that is as low as a seat
 constexpr std::int8_t kInferred = 80;  // percent
 
 int lowest_bit(std::uint16_t bits) {
@@ -30,6 +31,21 @@ std::uint16_t edge_in(const CellBands& c) {
   const int lowest = lowest_bit(c.occupied);
   const bool in_one = std::has_single_bit((c.occupied >> lowest) + 1U);
   return in_one && (c.free & ((1U << lowest) - 1U)) != 0U ? c.occupied : 0;
+}
+
+/// What is taller than an edge, a wall say, has a fringe that may look like one.
+bool is_fringe(const std::vector<CellBands>& bands, const maps::GridGeometry& g, maps::Cell cell) {
+  const std::uint16_t edge = bands[g.index_of(cell)].occupied;
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const maps::Cell c{cell.x + dx, cell.y + dy};
+      if (!g.contains(c)) continue;
+      const std::uint16_t beside = bands[g.index_of(c)].occupied;
+      if (std::popcount(beside) <= kThickestEdge) continue;
+      if (beside >= 2U * std::bit_floor(edge) || std::popcount(beside) >= kWall) return true;
+    }
+  }
+  return false;
 }
 
 std::uint16_t hidden_in(const CellBands& c) {
@@ -56,7 +72,7 @@ std::uint16_t edge_ahead(const std::vector<CellBands>& bands, const maps::GridGe
     if (!g.contains(c)) return 0;
     const CellBands& at = bands[g.index_of(c)];
     const std::uint16_t edge = edge_in(at);
-    if ((edge & hidden) != 0) return edge & hidden;
+    if ((edge & hidden) != 0) return is_fringe(bands, g, c) ? 0 : edge & hidden;
     if (edge == 0 && !is_under_something(at)) return 0;
   }
   return 0;

@@ -65,6 +65,8 @@ bool PlaceFinder::see(double time_s, const Se3& odom_from_base, const std::vecto
 void PlaceFinder::recognize(const Se3& map_from_base, const Se3& odom_from_base, double weight) {
   for (PlaceCandidate& c : candidates_) {
     if (!is_same(c.map_from_odom * odom_from_base, map_from_base)) continue;
+    // Along a wall features say more than its shape, which alone has proposed this so far.
+    if (c.recognitions == 0.0) c.map_from_odom = map_from_base * odom_from_base.inverse();
     c.recognitions += weight;
     return;
   }
@@ -170,6 +172,11 @@ std::optional<PlaceCandidate> PlaceFinder::best() const {
                        [](const auto& a, const auto& b) { return weight_of(a) < weight_of(b); });
   if (it == candidates_.end()) return std::nullopt;
   return *it;
+}
+
+bool PlaceFinder::is_best(const Se3& map_from_base, const Se3& odom_from_base) const {
+  const auto found = best();
+  return found && is_same(found->map_from_odom * odom_from_base, map_from_base);
 }
 
 PlaceSupport PlaceFinder::support(const Se3& map_from_base, const Se3& odom_from_base) const {

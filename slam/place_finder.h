@@ -61,6 +61,8 @@ class PlaceFinder {
   void judge(const Se3& odom_from_base);
 
   std::optional<PlaceCandidate> best() const;
+  /// Whether that is the place where the rover would be at `map_from_base`.
+  bool is_best(const Se3& map_from_base, const Se3& odom_from_base) const;
   PlaceSupport support(const Se3& map_from_base, const Se3& odom_from_base) const;
 
   void clear();

@@ -7,9 +7,11 @@ namespace rovigo::slam {
 
 namespace {
 
-constexpr double kHit = 0.9;    // log-odds of a band that stopped rays, when the range is exact
-constexpr double kMiss = 0.45;  // and of one that rays passed
-constexpr int kManyHits = 5;    // fewer rays vote with less weight: strays are single
+constexpr double kHit = 0.9;      // log-odds of a band that stopped rays, when the range is exact
+constexpr double kMiss = 0.45;    // and of one that rays passed
+constexpr double kSilence = 0.2;  // and of one where nothing gave a return
+constexpr double kSilentShare = 0.5;  // of the rays expected there
+constexpr int kManyHits = 5;          // fewer rays vote with less weight: strays are single
 constexpr int kManyPasses = 5;
 constexpr double kHitShare = 0.2;         // of the rays in a band; thin legs let most of them by
 constexpr float kSigmasBeforeEnd = 3.0f;  // a ray's last bit, which may not have been passed
@@ -40,14 +42,16 @@ void RayVoter::open_window(const DepthScan& scan, const TPose2D& patch_from_leve
   eye_ = maps::transform(patch_from_level, {scan.camera.x(), scan.camera.y()});
   const float reach = static_cast<float>(config_.mapping_range_m) + kClearBeyondM;
   float x0 = 0, x1 = 0, y0 = 0, y1 = 0;
-  for (const ScanRay& r : scan.rays) {
-    const float range = std::min(r.range_m, reach);
-    const float x = range * (cosine_ * r.along_x - sine_ * r.along_y);
-    const float y = range * (sine_ * r.along_x + cosine_ * r.along_y);
-    x0 = std::min(x0, x);
-    x1 = std::max(x1, x);
-    y0 = std::min(y0, y);
-    y1 = std::max(y1, y);
+  for (const auto* rays : {&scan.rays, &scan.silent}) {
+    for (const ScanRay& r : *rays) {
+      const float range = std::min(r.range_m, reach);
+      const float x = range * (cosine_ * r.along_x - sine_ * r.along_y);
+      const float y = range * (sine_ * r.along_x + cosine_ * r.along_y);
+      x0 = std::min(x0, x);
+      x1 = std::max(x1, x);
+      y0 = std::min(y0, y);
+      y1 = std::max(y1, y);
+    }
   }
   const double cell = config_.grid_resolution_m;
   const auto down = [&](double v) { return static_cast<int>(std::floor(v / cell)) - 1; };
@@ -102,6 +106,17 @@ void RayVoter::follow(const CellRay& ray, float from, float to, int weight) {
   }
 }
 
+/// Only where it is close to the floor: higher up, open space beyond the range is as silent.
+void RayVoter::follow_silent(const CellRay& ray) {
+  if (ray.slope > -1e-6f) return;
+  const float begin = std::max(0.0f, (2.0f * kShallowBands - ray.low) / ray.slope);
+  const float end = std::min(ray.end, -ray.low / ray.slope);
+  for (float r = begin; r < end; r += 1.0f) {
+    const int half = std::clamp(static_cast<int>(ray.low + r * ray.slope), 0, kHalfBands - 1);
+    count(counts_[cell_at(ray, r) + static_cast<std::size_t>(half / 2)].silent, 1);
+  }
+}
+
 bool RayVoter::is_obstacle_hit(const CellRay& ray) const {
   const float height = ray.low + ray.end * ray.slope;
   return height >= 0.0f && height < kHalfBands &&
@@ -119,10 +134,20 @@ void RayVoter::count_hit(const CellRay& ray) {
   count(counts_[cell_at(ray, ray.end) + band].hits, 1);
 }
 
+/// In half a band of a cell.
+double RayVoter::rays_expected(double range_m) const {
+  const double area = 0.5 * band_height(config_) * config_.grid_resolution_m;
+  return rays_per_steradian_ * area / std::max(0.01, range_m * range_m);
+}
+
+bool RayVoter::is_silent(const Counts& c, double range_m) const {
+  const double expected = std::min<double>(2.0 * rays_expected(range_m), kMostCounts);
+  return c.hits == 0 && c.silent > 0 && c.silent >= kSilentShare * expected;
+}
+
 /// Rays went through the whole height of the band, as far as the camera's resolution tells.
 bool RayVoter::is_crossed(const Counts& c, double range_m) const {
-  const double area = 0.5 * band_height(config_) * config_.grid_resolution_m;
-  const double expected = rays_per_steradian_ * area / std::max(0.01, range_m * range_m);
+  const double expected = rays_expected(range_m);
   const int fewer = std::min(c.passes[0], c.passes[1]);
   if (expected < kResolved) return c.passes[0] + c.passes[1] > 0;
   return fewer >= kCrossedShare * std::min<double>(expected, kMostCounts);
@@ -137,7 +162,9 @@ int RayVoter::vote_of(const Counts& counts, double range_m) const {
     const double many = std::min(1.0, counts.hits / static_cast<double>(kManyHits));
     return std::max(1, static_cast<int>(std::lround(kHit * kStepsPerLogOdds * sure * many)));
   }
-  if (!is_crossed(counts, range_m)) return 0;
+  if (!is_crossed(counts, range_m)) {
+    return is_silent(counts, range_m) ? -static_cast<int>(kSilence * kStepsPerLogOdds) : 0;
+  }
   const double many = std::min(1.0, passes / static_cast<double>(kManyPasses));
   return -static_cast<int>(std::lround(kMiss * kStepsPerLogOdds * many));
 }
@@ -160,7 +187,7 @@ void RayVoter::cast_votes(EvidencePatch& patch) const {
     EvidencePatch::TileIndex tile_index{};
     for (int x = 0; x < width_; ++x, row += kHeightBands) {
       const bool nothing = std::all_of(row, row + kHeightBands, [](const Counts& c) {
-        return c.hits == 0 && c.passes[0] == 0 && c.passes[1] == 0;
+        return c.hits == 0 && c.passes[0] == 0 && c.passes[1] == 0 && c.silent == 0;
       });
       if (nothing) continue;
       const maps::Cell cell{corner_.x + x, corner_.y + y};
@@ -194,6 +221,7 @@ void RayVoter::vote(const DepthScan& scan, const TPose2D& patch_from_level, Evid
       count_hit(ray);
     }
   }
+  for (const ScanRay& ray : scan.silent) follow_silent(cell_ray(scan, ray));
   cast_votes(patch);
 }
 

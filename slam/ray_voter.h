@@ -30,6 +30,7 @@ class RayVoter {
   struct Counts {
     std::uint8_t hits = 0;
     std::array<std::uint8_t, 2> passes{};
+    std::uint8_t silent = 0;  ///< rays on their way to ground that gives no return
   };
   /// A ray in units of cells, from the window's corner.
   struct CellRay {
@@ -41,6 +42,7 @@ class RayVoter {
   void open_window(const DepthScan& scan, const TPose2D& patch_from_level);
   CellRay cell_ray(const DepthScan& scan, const ScanRay& ray) const;
   void follow(const CellRay& ray, float from, float to, int weight);
+  void follow_silent(const CellRay& ray);
   bool is_obstacle_hit(const CellRay& ray) const;
   void count_hit(const CellRay& ray);
   maps::Cell end_cell(const CellRay& ray) const;
@@ -49,6 +51,8 @@ class RayVoter {
   int vote_of(const Counts& counts, double range_m) const;
   std::array<int, kHeightBands> votes_of(const Counts* bands, double range_m) const;
   bool is_crossed(const Counts& counts, double range_m) const;
+  bool is_silent(const Counts& counts, double range_m) const;
+  double rays_expected(double range_m) const;
 
   GridConfig config_;
   DepthConfig depth_;

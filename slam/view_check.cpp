@@ -22,7 +22,7 @@ constexpr double kLeastDepthShare = 0.6, kLeastScanShare = 0.5, kLeastMatchedSha
 ViewCheck ViewChecker::check(const SeenView& view, const std::vector<int>& landmarks,
                              const Se3& map_from_base, int inliers) const {
   const DepthAgreement depth =
-      depth_agreement(map_, landmarks, view.frame, map_from_base, on_floor_);
+      depth_agreement(map_, landmarks, view.frame, map_from_base, on_floor_, walls_);
   ViewCheck out;
   if (depth.judged() >= kEnoughLandmarks) out.depth_share = depth.share();
   if (walls_ && view.scan.size() >= kEnoughPoints) {

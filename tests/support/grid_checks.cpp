@@ -66,12 +66,27 @@ std::optional<double> distance_to_wall(const OccupancyGrid& grid, const TPoint2D
   return std::nullopt;
 }
 
-bool is_under(const sim::Solid& solid, const TPoint2D& p) {
+/// `rim_m` or more inside the outline.
+bool is_under(const sim::Solid& solid, const TPoint2D& p, double rim_m) {
   const Eigen::Vector3d in_solid =
       solid.world_from_solid.inverse() *
       Eigen::Vector3d(p.x, p.y, solid.world_from_solid.translation().z());
-  return std::abs(in_solid.x()) <= 0.5 * solid.size.x() &&
-         std::abs(in_solid.y()) <= 0.5 * solid.size.y();
+  return std::abs(in_solid.x()) <= 0.5 * solid.size.x() - rim_m &&
+         std::abs(in_solid.y()) <= 0.5 * solid.size.y() - rim_m;
+}
+
+/// Part of a table that is lower than the rover: by its name, or a top below the obstacle height.
+bool is_low_table(const sim::Solid& solid) {
+  constexpr double kHighestTopM = 0.5;
+  if (solid.name.find("low_table") != std::string::npos) return true;
+  const double top_m = solid.world_from_solid.translation().z() + 0.5 * solid.size.z();
+  return solid.name.ends_with("::top") && top_m < kHighestTopM;
+}
+
+bool is_under_low_table(const sim::World& world, const TPoint2D& p, double rim_m) {
+  const auto& solids = world.model().solids;
+  return std::any_of(solids.begin(), solids.end(),
+                     [&](const sim::Solid& s) { return is_low_table(s) && is_under(s, p, rim_m); });
 }
 
 }  // namespace
@@ -115,21 +130,38 @@ std::optional<double> low_table_share(const OccupancyGrid& estimate, const Occup
                                       const TPose2D& truth_from_estimate, const sim::World& world) {
   const TPose2D estimate_from_truth = maps::inverse(truth_from_estimate);
   const auto& g = truth.geometry;
-  int cells = 0, held = 0;
+  std::vector<TPoint2D> table;
   for (std::size_t i = 0; i < g.size(); ++i) {
     if (!OccupancyGrid::is_occupied(truth.cells[i])) continue;
     const TPoint2D p = g.center_of(g.cell_of(i));
-    const bool is_table = std::any_of(
-        world.model().solids.begin(), world.model().solids.end(), [&](const sim::Solid& s) {
-          return s.name.find("low_table") != std::string::npos && is_under(s, p);
-        });
-    if (!is_table) continue;
-    ++cells;
-    const Cell c = estimate.geometry.cell_at(transformed(estimate_from_truth, p));
-    held += estimate.geometry.contains(c) && OccupancyGrid::is_occupied(estimate.at(c));
+    if (is_under_low_table(world, p, 0.0)) table.push_back(p);
   }
-  if (cells == 0) return std::nullopt;
-  return static_cast<double>(held) / cells;
+  if (table.empty()) return std::nullopt;
+  const auto held = [&](const TPoint2D& shift) {
+    return std::count_if(table.begin(), table.end(), [&](const TPoint2D& p) {
+      const Cell c = estimate.geometry.cell_at(transformed(estimate_from_truth, p + shift));
+      return estimate.geometry.contains(c) && OccupancyGrid::is_occupied(estimate.at(c));
+    });
+  };
+  std::ptrdiff_t most = 0;
+  for (const double dx : {-1.0, 0.0, 1.0}) {
+    for (const double dy : {-1.0, 0.0, 1.0}) {
+      most = std::max(most, held({dx * g.resolution_m, dy * g.resolution_m}));
+    }
+  }
+  return static_cast<double>(most) / static_cast<double>(table.size());
+}
+
+int low_table_free_cells(const OccupancyGrid& estimate, const TPose2D& truth_from_estimate,
+                         const sim::World& world) {
+  const auto& g = estimate.geometry;
+  int cells = 0;
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    if (!OccupancyGrid::is_free(estimate.cells[i])) continue;
+    const TPoint2D p = transformed(truth_from_estimate, g.center_of(g.cell_of(i)));
+    cells += is_under_low_table(world, p, 1.5 * g.resolution_m) ? 1 : 0;
+  }
+  return cells;
 }
 
 }  // namespace rovigo::test

@@ -22,9 +22,16 @@ std::optional<double> wall_to_wall_m(const maps::OccupancyGrid& grid,
                                      double spread_m);
 
 /// Of the truly occupied cells under the solids of `world` that are part of a low table, the share
-/// that `estimate` holds occupied. None where the camera saw no low table.
+/// that `estimate` holds occupied. Like precision and recall within a cell, it bears with a map
+/// that is off by a cell: the best of the nine shifts by whole cells, one for all tables. None
+/// where the camera saw no low table.
 std::optional<double> low_table_share(const maps::OccupancyGrid& estimate,
                                       const maps::OccupancyGrid& truth,
                                       const TPose2D& truth_from_estimate, const sim::World& world);
+
+/// Cells that `estimate` calls free well under a low table's top (a cell and a half from its rim),
+/// seen or not: a rover would drive into it.
+int low_table_free_cells(const maps::OccupancyGrid& estimate, const TPose2D& truth_from_estimate,
+                         const sim::World& world);
 
 }  // namespace rovigo::test

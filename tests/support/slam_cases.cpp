@@ -110,7 +110,8 @@ std::vector<SlamCase> make_cases() {
        {{"random:71", "loop:20:71", "default", 71},
         {"random:72", "loop:20:72", "default", 72},
         {"random:73", "loop:20:73", "default", 73}},
-       rover_checks({at_most(&S::ate_m, 0.015, 0.025), at_least(&S::low_table_share, 0.95)})});
+       rover_checks({at_most(&S::ate_m, 0.015, 0.025), at_least(&S::low_table_share, 0.95),
+                     at_most(&S::low_table_free, 0, 0)})});
   // An hour through the same rooms, two frames a second. "Flat": a tenth of the memory allowed.
   cases.push_back({"one_hour",
                    {},

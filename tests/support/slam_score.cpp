@@ -178,6 +178,7 @@ void score_grid(const SlamRun& run, const Truth& all_truth, const sim::Scenario&
   score.ghost_cells = ghost_cells(run.map.grid, truth, truth_from_map);
   const sim::World world = app::open_world(simulation.world);
   score.low_table_share = low_table_share(run.map.grid, truth, truth_from_map, world);
+  score.low_table_free = low_table_free_cells(run.map.grid, truth_from_map, world);
   if (world.name() != "corridor") return;
   const auto asked = wall_to_wall_m(truth, {}, kCorridorMiddle, kCorridorSpreadM);
   const auto found = wall_to_wall_m(run.map.grid, maps::inverse(truth_from_map), kCorridorMiddle,
@@ -245,6 +246,7 @@ const std::vector<Figure>& all_figures() {
       {"ghost_cells", &S::ghost_cells, 0},
       {"length_error", &S::length_error, 4},
       {"low_table_share", &S::low_table_share, 3},
+      {"low_table_free", &S::low_table_free, 0},
       {"steady_ratio", &S::steady_ratio, 2},
       {"memory_growth_mb", &S::memory_growth_mb, 1},
       {"cpu_growth", &S::cpu_growth, 2},

@@ -47,6 +47,7 @@ struct SlamScore {
   Value ghost_cells;       ///< occupied cells amid free ground (see ghost_cells())
   Value length_error;      ///< of the corridor, wall to wall, relative
   Value low_table_share;   ///< of the cells of low tables, those the map holds occupied
+  Value low_table_free;    ///< cells well under a low table that the map calls free
   Value steady_ratio;      ///< ATE over that of the same route in steady light
   Value memory_growth_mb;  ///< resident, from a third of the run to its end
   Value cpu_growth;        ///< CPU per frame, last third over second third

@@ -107,6 +107,13 @@ class Mapping : public ::testing::Test {
       voter_.vote(scanner_.scan(depth, 0.001, level_camera()), from, patch_);
     }
   }
+  /// Farther than 1.4 m floor is too grazing for a return: no ray clears what is just above it.
+  cv::Mat without_far_floor(const std::vector<Slab>& slabs) const {
+    cv::Mat depth = view(camera_, slabs);
+    const cv::Mat floor_alone = view(camera_, {});
+    depth.setTo(0, (depth == floor_alone) & (depth > 1400));
+    return depth;
+  }
   void look_at(const std::vector<Slab>& slabs, int times, const TPose2D& from = {0, 0, 0}) {
     look(view(camera_, slabs), times, from);
   }
@@ -212,17 +219,28 @@ TEST_F(Mapping, SomethingThatLeftIsCleared) {
 }
 
 TEST_F(Mapping, WhoStoodWhereTheFloorGivesNoReturnLeavesNoFeetBehind) {
-  // Farther than 1.4 m the floor is too grazing: no ray clears what is just above it.
-  const auto without_far_floor = [&](const std::vector<Slab>& slabs) {
-    cv::Mat depth = view(camera_, slabs);
-    const cv::Mat floor_alone = view(camera_, {});
-    depth.setTo(0, (depth == floor_alone) & (depth > 1400));
-    return depth;
-  };
   look(without_far_floor({{1.5, 1.8, 0.0, 1.8}, wall(4.0)}), 8);
   EXPECT_TRUE(occupied(grid(), 1.5, 0.0));
   look(without_far_floor({wall(4.0)}), 12);
   EXPECT_TRUE(free(grid(), 1.5, 0.0));
+}
+
+TEST_F(Mapping, AShoeThatGaveReturnsAndGivesNoneAnyMoreHasLeft) {
+  look(without_far_floor({{1.5, 1.75, 0.0, 0.09}, wall(4.0)}), 8);
+  EXPECT_TRUE(occupied(grid(), 1.5, 0.0));
+  look(without_far_floor({wall(4.0)}), 40);
+  EXPECT_TRUE(free(grid(), 1.5, 0.0));
+}
+
+TEST_F(Mapping, ALowStepOnFarFloorThatGivesNoReturnStays) {
+  look(without_far_floor({{2.1, 2.4, 0.0, 0.09}, wall(4.0)}), 60);
+  EXPECT_TRUE(occupied(grid(), 2.1, 0.0));
+}
+
+TEST_F(Mapping, ACoveredCameraClearsNothing) {
+  look(without_far_floor({{1.5, 1.75, 0.0, 0.09}, wall(4.0)}), 8);
+  look(cv::Mat::zeros(480, 640, CV_16UC1), 60);
+  EXPECT_TRUE(occupied(grid(), 1.5, 0.0));
 }
 
 TEST_F(Mapping, RaysOverSomethingLowDoNotClearIt) {

@@ -79,6 +79,28 @@ TEST_F(Tops, TheShadowBetweenASeatAndAWallIsNoTop) {
   EXPECT_EQ(filled(16, 19, 13, 16), 16) << "the seat itself";
 }
 
+/// The table of the corridor's east room: its side and a wall's fringe, which looks like an edge.
+TEST_F(Tops, AWallsFringeIsNoEdge) {
+  draw(10, 25, 10, 20, "...... ..");
+  draw(10, 10, 10, 20, "......#..");
+  draw(10, 25, 10, 10, "......#..");
+  draw(10, 25, 20, 20, "......##.");
+  draw(10, 25, 21, 22, "#########");
+  draw(25, 25, 10, 20, "......#..");
+  draw(26, 27, 10, 22, "#########");
+  EXPECT_EQ(filled(20, 24, 15, 19), 0) << "nobody saw the table's far corner";
+  EXPECT_EQ(filled(11, 13, 11, 13), 9);
+}
+
+TEST_F(Tops, ATopStaysWholeBesideItsLegs) {
+  draw(10, 20, 10, 20, "......#..");
+  draw(11, 19, 11, 19, "...... ..");
+  for (const int x : {10, 20}) {
+    for (const int y : {10, 20}) draw(x, x, y, y, "#######..");
+  }
+  EXPECT_EQ(filled(11, 19, 11, 19), 81);
+}
+
 TEST_F(Tops, EdgesOfOtherHeightsEncloseNoTop) {
   draw(10, 20, 10, 20, "....#....");
   draw(11, 19, 11, 19, "...... ..");

@@ -153,5 +153,38 @@ TEST(PlaceFinder, WithoutAGridAppearanceAloneDecides) {
   EXPECT_NEAR(finder.support(here, Se3{}).rival_recognition_share(), 0.4 / 1.4, 1e-9);
 }
 
+TEST(PlaceFinder, FeaturesSayMoreAboutAPlaceThanTheShapeThatProposedIt) {
+  const DepthRoom room = test::odd_room();
+  const maps::SavedMap map = map_of(room);
+  Rover rover(room, map, {1.0, 1.2, 2.0});
+  rover.turns_around();
+  TPose2D seen = rover.truth;
+  seen.x += 0.15;
+  rover.finder.recognize(from_planar(seen), from_planar(rover.odom), 1.0);
+  const auto best = rover.finder.best();
+  ASSERT_TRUE(best);
+  const TPose2D at = to_planar(best->map_from_odom * from_planar(rover.odom));
+  EXPECT_LT(maps::distance(maps::position_of(at), maps::position_of(seen)), 1e-9);
+}
+
+TEST(PlaceFinder, ARefutedPlaceStaysTheBestWhereNoOtherFits) {
+  const DepthRoom room = test::odd_room();
+  const maps::SavedMap map = map_of(room);
+  Rover rover(room, map, {1.0, 1.2, 2.0});
+  rover.turns_around();
+  const Se3 odom = from_planar(rover.odom);
+  const auto best = rover.finder.best();
+  ASSERT_TRUE(best);
+  const Se3 here = best->map_from_odom * odom;
+  rover.finder.refute(here, odom);
+  EXPECT_TRUE(rover.finder.is_best(here, odom));
+  Se3 away = here;
+  away.translation.x() += 2.0;
+  EXPECT_FALSE(rover.finder.is_best(away, odom));
+  rover.finder.recognize(away, odom, 1.0);
+  for (int i = 0; i < 20; ++i) rover.finder.refute(here, odom);
+  EXPECT_FALSE(rover.finder.is_best(here, odom)) << "contradictions add up";
+}
+
 }  // namespace
 }  // namespace rovigo::slam
