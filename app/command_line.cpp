@@ -132,6 +132,10 @@ void add_track_command(CLI::App& app, Action& chosen, bool& json) {
   track->add_option("--shard", t->shard, "Drive only share I of N of the runs")->type_name("I/N");
   track->add_option("--merge", t->merge, "Put together what shards with --json printed")
       ->type_name("FILES...");
+  track->add_option("--report", t->report,
+                    "Write a report folder to open in a browser; shards' reports can be merged");
+  track->add_option("--against", t->against,
+                    "With --report: compare with this earlier track.json, run by run");
   track->add_option("--threads", t->threads, "Default: as many as the machine has")
       ->check(CLI::Range(1, 1024));
 }

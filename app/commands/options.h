@@ -85,6 +85,7 @@ struct TrackOptions : CommonOptions {
   std::optional<std::string> shard;
   std::vector<std::filesystem::path> merge;
   std::optional<unsigned> threads;
+  std::optional<std::filesystem::path> against;
   std::optional<std::filesystem::path> report;
 };
 

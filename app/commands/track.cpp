@@ -2,6 +2,7 @@
 
 #include "app/commands/options.h"
 #include "app/parallel.h"
+#include "app/report/track_report.h"
 #include "app/resources.h"
 #include "app/simulated_drive.h"
 #include "app/track/track_result.h"
@@ -23,11 +24,13 @@ std::string suite_hash(const std::filesystem::path& file, const RovigoConfig& co
   return sha256(text);
 }
 
-TrackResult drive_suite(const TrackOptions& options) {
+/// Drives and judges; with a report, keeps what it draws.
+TrackPageInput drive_suite(const TrackOptions& options) {
   const RovigoConfig config = load_config(options.config, options.set);
   const std::filesystem::path file = find_suite(options.suite);
   const TrackBench bench(load_suite(file), config, options.pose);
-  TrackResult result;
+  TrackPageInput out;
+  TrackResult& result = out.result;
   result.suite = bench.suite().name;
   result.suite_hash = suite_hash(file, config, options.pose);
   if (options.shard) result.shard = parse_shard(*options.shard);
@@ -39,12 +42,26 @@ TrackResult drive_suite(const TrackOptions& options) {
     if (!result.shard || result.shard->holds(i)) mine.push_back(all[i]);
   }
   result.runs.resize(mine.size());
+  if (options.report) out.series.resize(mine.size());
   Progress progress("tracking");
   run_parallel(
       mine.size(), options.threads.value_or(machine_threads()),
-      [&](std::size_t i) { result.runs[i] = run_json(bench.run(mine[i])); },
+      [&](std::size_t i) {
+        const TrackRun run = bench.run(mine[i]);
+        result.runs[i] = run_json(run);
+        if (!options.report) return;
+        out.series[i] = series_of(run, bench.planned(mine[i]).trajectory);
+        write_trajectories(*options.report, run);
+      },
       [&](double share) { progress.update(share); });
-  return result;
+  return out;
+}
+
+TrackPageInput merge_shards(const TrackOptions& options) {
+  TrackPageInput out;
+  out.result = merge_results(options.merge);
+  if (options.report) out.series = gather_drives(options.merge, out.result, *options.report);
+  return out;
 }
 
 }  // namespace
@@ -56,8 +73,17 @@ int run_track(const TrackOptions& options) {
         "--shard drives a share of a suite and --merge puts shares together; "
         "give one of them");
   }
-  const TrackResult result =
-      options.merge.empty() ? drive_suite(options) : merge_results(options.merge);
+  std::optional<TrackResult> against;
+  if (options.against) against = read_result(*options.against);
+  if (options.report) make_track_folder(*options.report);
+  TrackPageInput done = options.merge.empty() ? drive_suite(options) : merge_shards(options);
+  if (options.report) {
+    if (against) done.against_name = options.against->string();
+    done.against = std::move(against);
+    write_track_report(*options.report, done);
+    console.say("report: " + (*options.report / "index.html").string());
+  }
+  const TrackResult& result = done.result;
   console.result(result_json(result), result_message(result), result_rows(result));
   return failed_runs(result) == 0 ? kDone : kDidNotSucceed;
 }

@@ -1,61 +1,19 @@
 #include "app/report/drive_page.h"
 
 #include "app/report/number_text.h"
+#include "app/report/page_parts.h"
 
 namespace rovigo::app {
 namespace {
 
-const char* const kPageStyle = R"(
-:root{color-scheme:light dark;--page:#fff;--ink:#1f2328;--soft:#59636e;--line:#d9dee3;--card:#f6f8fa;
- --good:#1a7f37;--bad:#b3261e}
-@media (prefers-color-scheme:dark){:root{--page:#0d1117;--ink:#e6edf3;--soft:#9da7b1;--line:#30363d;
- --card:#161b22;--good:#3fb950;--bad:#ff7b72}}
-*{box-sizing:border-box}
-body{margin:0;background:var(--page);color:var(--ink);
- font:16px/1.5 system-ui,"DejaVu Sans",sans-serif}
-main{max-width:1160px;margin:0 auto;padding:28px 20px 48px}
-h1{font-size:26px;margin:0 0 4px;line-height:1.25}
-h2{font-size:18px;margin:34px 0 10px}
-.summary{margin:0 0 18px;color:var(--soft)}
-.badge{display:inline-block;padding:1px 12px;border-radius:99px;color:#fff;font-size:14px;
- font-weight:600;vertical-align:3px;margin-left:8px}
-.badge.good{background:#1a7f37}.badge.bad{background:#b3261e}
-.figures{display:grid;grid-template-columns:repeat(auto-fit,minmax(150px,1fr));gap:10px;margin:18px 0}
-.figure{background:var(--card);border:1px solid var(--line);border-radius:8px;padding:10px 14px}
-.figure b{display:block;font-size:20px;font-weight:600}
-.figure span{color:var(--soft);font-size:13.5px}
-.map{width:100%;height:auto;border:1px solid var(--line);border-radius:8px;background:#fff;
- display:block}
-.plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(460px,100%),1fr));gap:14px}
-.plots>div{border:1px solid var(--line);border-radius:8px;padding:6px}
-.columns{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(460px,100%),1fr));
- gap:0 34px}
-table{border-collapse:collapse;width:100%;font-size:15px}
-td,th{text-align:left;padding:5px 10px 5px 0;border-bottom:1px solid var(--line);
- font-weight:400}
-th{color:var(--soft);font-size:13.5px}
-td.n,th.n{text-align:right;font-variant-numeric:tabular-nums;white-space:nowrap}
-.pass{color:var(--good);font-weight:600}.fail{color:var(--bad);font-weight:600}
-code{background:var(--card);border:1px solid var(--line);border-radius:6px;padding:8px 12px;
- display:block;overflow-x:auto;font:13.5px/1.5 ui-monospace,"DejaVu Sans Mono",monospace}
-a{color:inherit}
-ul{padding-left:20px;margin:6px 0}
-@media print{.plots>div,.map{break-inside:avoid}}
-)";
-
-std::string figure(const std::string& name, const std::string& value) {
-  return "<div class=\"figure\"><b>" + escaped(value) + "</b><span>" + escaped(name) +
-         "</span></div>\n";
-}
-
 std::string figures(const DriveReportInput& in) {
   const control::DriveMetrics& m = in.metrics;
-  return "<div class=\"figures\">\n" + figure("driven", quantity(m.driven_length_m, "m")) +
-         figure("time", quantity(m.duration_s, "s")) +
-         figure("cross-track error, RMS", quantity(m.cross_track_rms_m, "m")) +
-         figure("cross-track error, largest", quantity(m.cross_track_max_m, "m")) +
-         figure("distance from the goal", quantity(m.final_position_error_m, "m")) +
-         figure("collisions", std::to_string(in.log.contact_events)) + "</div>\n";
+  return "<div class=\"figures\">\n" + page_figure("driven", quantity(m.driven_length_m, "m")) +
+         page_figure("time", quantity(m.duration_s, "s")) +
+         page_figure("cross-track error, RMS", quantity(m.cross_track_rms_m, "m")) +
+         page_figure("cross-track error, largest", quantity(m.cross_track_max_m, "m")) +
+         page_figure("distance from the goal", quantity(m.final_position_error_m, "m")) +
+         page_figure("collisions", std::to_string(in.log.contact_events)) + "</div>\n";
 }
 
 std::string checks_table(const std::vector<ReportCheck>& checks) {
@@ -153,12 +111,8 @@ std::string base64(const std::string& bytes) {
 
 std::string drive_page(const DriveReportInput& in, const std::vector<NamedPlot>& plots,
                        const std::string& map_png) {
-  std::string out = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
-  out += "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n";
-  out += "<title>" + escaped(in.title) + "</title>\n<style>" + kPageStyle + plot_style() +
-         "</style>\n</head>\n<body><main>\n";
-  out += "<h1>" + escaped(in.title) + " <span class=\"badge " +
-         (in.succeeded ? "good\">succeeded" : "bad\">failed") + "</span></h1>\n";
+  std::string out = page_begin(in.title);
+  out += page_title(in.title, in.succeeded, in.succeeded ? "succeeded" : "failed");
   out += "<p class=\"summary\">" + escaped(in.summary) + "</p>\n";
   out += figures(in);
   out +=

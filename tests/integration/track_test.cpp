@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/run_rovigo.h"
@@ -62,6 +64,38 @@ TEST_F(Track, SameBytesForAnyNumberOfThreadsAndForMergedShards) {
     test::write_text(merge.back(), run({suite_, "--shard", std::string(shard) + "/3"}));
   }
   EXPECT_EQ(run(merge), whole);
+}
+
+std::map<std::string, std::string> files_in(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    files[std::filesystem::relative(entry.path(), folder)] = test::read_text(entry.path());
+  }
+  return files;
+}
+
+TEST_F(Track, TheReportOfMergedShardsIsTheWholesByteForByte) {
+  test::write_text(suite_,
+                   "trajectories: {line: {length_m: 0.4}}\n"
+                   "groups: [{name: g, seeds: [1, 2], controllers: [default, reference],\n"
+                   "          limits: {must_reach: false}}]\n");
+  run({suite_, "--report", folder_ / "whole"});
+  run({suite_, "--shard", "1/2", "--report", folder_ / "one"});
+  run({suite_, "--shard", "2/2", "--report", folder_ / "two"});
+  run({"--merge", folder_ / "one/track.json", folder_ / "two/track.json", "--report",
+       folder_ / "merged"});
+  const auto whole = files_in(folder_ / "whole");
+  EXPECT_EQ(whole.size(), 4U + 2U * 4U);
+  EXPECT_EQ(files_in(folder_ / "merged"), whole);
+  const std::string page = whole.at("index.html");
+  EXPECT_THAT(page, HasSubstr("Two controllers side by side"));
+  EXPECT_EQ(page.find("http"), page.find("http://www.w3.org"));  // nothing is fetched
+  std::filesystem::remove(folder_ / "two/drives.json");
+  EXPECT_THAT(run({"--merge", folder_ / "one/track.json", folder_ / "two/track.json", "--report",
+                   folder_ / "again"},
+                  2),
+              HasSubstr("drives.json"));
 }
 
 TEST_F(Track, ARunBeyondItsLimitsFailsTheSuiteAndSaysByHowMuch) {
