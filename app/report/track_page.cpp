@@ -18,6 +18,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kOurs = 0, kTheirs = 1, kPlan = 3;  // colours
 constexpr double kMillimetres = 1000.0;
+constexpr double kLostM = 0.5;  // farther off its path a drive is no longer drawn: it ran away
 constexpr std::size_t kMostLines = 3;  // of one controller in a plot over time
 
 /// A run's name taken apart, with its figures and what is drawn of it.
@@ -220,6 +221,13 @@ std::vector<double> scaled(std::vector<double> values, double factor) {
   return values;
 }
 
+/// Samples until the drive runs away, if it does.
+std::size_t samples_near_the_path(const DriveSeries& s) {
+  std::size_t n = 0;
+  while (n < s.cross_track_m.size() && std::abs(s.cross_track_m[n]) <= kLostM) ++n;
+  return n;
+}
+
 /// The first run of each group, three of ours and one of the thesis's at most.
 std::vector<const Entry*> shown_over_time(const std::vector<const Entry*>& runs) {
   std::vector<const Entry*> shown;
@@ -237,24 +245,31 @@ std::string trajectory_section(const std::string& name, const std::vector<const 
   std::copy_if(runs.begin(), runs.end(), std::back_inserter(drawn),
                [](const Entry* e) { return e->series != nullptr; });
   if (drawn.empty()) return {};
-  const auto line_of = [](const std::vector<double>& x, const std::vector<double>& y) {
+  const auto line_of = [](const std::vector<double>& x, const std::vector<double>& y,
+                          std::size_t count) {
     std::vector<TPoint2D> points;
-    for (std::size_t i = 0; i < x.size(); ++i) points.emplace_back(x[i], y[i]);
+    for (std::size_t i = 0; i < count; ++i) points.emplace_back(x[i], y[i]);
     return points;
   };
   std::vector<PathLine> lines;
   for (const Entry* e : drawn) {
     const DriveSeries& s = *e->series;
-    lines.push_back(
-        {e->is_reference() ? "the thesis's" : "ours", line_of(s.x_m, s.y_m), e->color(), false});
+    lines.push_back({e->is_reference() ? "the thesis's" : "ours",
+                     line_of(s.x_m, s.y_m, samples_near_the_path(s)), e->color(), false});
   }
   const DriveSeries& plan = *drawn[0]->series;
-  lines.push_back({"planned", line_of(plan.planned_x_m, plan.planned_y_m), kPlan, true});
+  lines.push_back({"planned", line_of(plan.planned_x_m, plan.planned_y_m, plan.planned_x_m.size()),
+                   kPlan, true});
   const auto shown = shown_over_time(drawn);
   return "<h2>" + escaped(name) + "</h2>\n<div class=\"plots\">\n<div>" +
-         path_plot_svg("All " + std::to_string(drawn.size()) + " drives", lines) + "</div>\n" +
+         path_plot_svg("All " + std::to_string(drawn.size()) + " drives (until 0.5 m off)", lines) +
+         "</div>\n" +
          over_time("Cross-track error", "mm", shown, 10.0,
-                   [](const DriveSeries& s) { return scaled(s.cross_track_m, kMillimetres); }) +
+                   [](const DriveSeries& s) {
+                     auto errors = scaled(s.cross_track_m, kMillimetres);
+                     errors.resize(samples_near_the_path(s));
+                     return errors;
+                   }) +
          over_time("Commanded speed", "m/s", shown, 0.1,
                    [](const DriveSeries& s) { return s.speed_m_s; }) +
          over_time("Commanded turn rate", "rad/s", shown, 0.2,
