@@ -122,6 +122,20 @@ void add_driving_commands(CLI::App& app, Action& chosen, bool& json) {
   drive->add_option("--report", d->report, "Write a report folder to open in a browser");
 }
 
+void add_track_command(CLI::App& app, Action& chosen, bool& json) {
+  CLI::App* track =
+      app.add_subcommand("track", "Repeatable trajectory-tracking tests in the simulator");
+  auto t = bind(*track, run_track, chosen, json);
+  track->add_option("suite", t->suite, "A name in sim/suites or a YAML file; default: default");
+  track->add_option("--pose", t->pose, "Pose source of every run, whatever the suite says")
+      ->check(CLI::IsMember({"perturbed", "truth"}));
+  track->add_option("--shard", t->shard, "Drive only share I of N of the runs")->type_name("I/N");
+  track->add_option("--merge", t->merge, "Put together what shards with --json printed")
+      ->type_name("FILES...");
+  track->add_option("--threads", t->threads, "Default: as many as the machine has")
+      ->check(CLI::Range(1, 1024));
+}
+
 void add_file_commands(CLI::App& app, Action& chosen, bool& json) {
   CLI::App* info =
       app.add_subcommand("info", "What a recording or a map holds; rescues damaged maps");
@@ -195,6 +209,7 @@ int run_command_line(int argc, const char* const* argv) {
   bool json = false;
   add_recording_commands(app, chosen, json);
   add_driving_commands(app, chosen, json);
+  add_track_command(app, chosen, json);
   add_file_commands(app, chosen, json);
   add_checking_commands(app, chosen, json);
 

@@ -63,6 +63,10 @@ sim::Scenario open_scenario(const std::string& name_or_path) {
   return sim::load_scenario(find("scenario", "scenarios", ".yaml", name_or_path));
 }
 
+fs::path find_suite(const std::string& name_or_path) {
+  return find("suite", "suites", ".yaml", name_or_path);
+}
+
 void require_writable(const std::filesystem::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   std::error_code ignored;

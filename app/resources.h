@@ -1,5 +1,5 @@
 #pragma once
-// Worlds, routes and scenarios by name or by path; outputs checked before the work begins.
+// Worlds, routes, scenarios and suites by name or by path; outputs checked before the work begins.
 
 #include <cstdint>
 #include <filesystem>
@@ -18,6 +18,9 @@ sim::World open_world(const std::string& name_or_path);
 sim::Route open_route(const std::string& name_or_path);
 /// A name in sim/scenarios, or a path to a YAML file.
 sim::Scenario open_scenario(const std::string& name_or_path);
+
+/// The file of a name in sim/suites, or of a path.
+std::filesystem::path find_suite(const std::string& name_or_path);
 
 /// Throws InputError when a file could not be written here: long work must not end in "no such
 /// folder". A folder that does not exist yet counts as unwritable.

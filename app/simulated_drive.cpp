@@ -13,6 +13,33 @@ namespace {
 
 constexpr int kStepsPerCommand = 2;  // 120 Hz on a 240 Hz simulator
 
+class Sha256 {
+ public:
+  Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
+    static_assert(std::endian::native == std::endian::little,
+                  "the hash is over little-endian doubles");
+    if (!context_ || EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) != 1) {
+      throw std::runtime_error("SHA-256 is not available");
+    }
+  }
+  void add(const void* bytes, std::size_t size) { EVP_DigestUpdate(context_.get(), bytes, size); }
+  std::string hex() {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+    unsigned int size = 0;
+    EVP_DigestFinal_ex(context_.get(), digest.data(), &size);
+    std::string text;
+    constexpr char kDigits[] = "0123456789abcdef";
+    for (unsigned int i = 0; i < size; ++i) {
+      text += kDigits[digest[i] >> 4];
+      text += kDigits[digest[i] & 15];
+    }
+    return text;
+  }
+
+ private:
+  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+};
+
 }  // namespace
 
 void DriveLoop::advance(const TTwist2D& command) {
@@ -34,11 +61,11 @@ TPose2D DriveLoop::true_pose() const {
   return maps::compose(map_from_world_, TPose2D(simulator_.truth().world_from_base.asTPose()));
 }
 
-control::DriveStep DriveLoop::step(control::TrajectoryTracker& tracker, double begin_s,
+control::DriveStep DriveLoop::step(control::DriveController& controller, double begin_s,
                                    control::TrackStatus& status) {
   const double now = simulator_.time_s();
   const control::PoseInput pose = poses_.pose(now);
-  const control::TrackerOutput out = tracker.step(now, pose);
+  const control::TrackerOutput out = controller.step(now, pose);
   status = out.status;
   control::DriveStep step;
   step.time_s = now - begin_s;
@@ -55,7 +82,7 @@ control::DriveStep DriveLoop::step(control::TrajectoryTracker& tracker, double b
 }
 
 control::DriveLog drive_in_simulator(sim::Simulator& simulator, const TPose2D& world_from_map,
-                                     PoseSource& poses, control::TrajectoryTracker& tracker,
+                                     PoseSource& poses, control::DriveController& controller,
                                      double planned_duration_s, const DriveHooks& hooks) {
   DriveLoop loop(simulator, world_from_map, poses, hooks);
   control::DriveLog log;
@@ -63,7 +90,7 @@ control::DriveLog drive_in_simulator(sim::Simulator& simulator, const TPose2D& w
   const int contacts_before = simulator.truth().contact_events;
   const double begin_s = simulator.time_s();
   while (log.status == control::TrackStatus::kRunning) {
-    log.steps.push_back(loop.step(tracker, begin_s, log.status));
+    log.steps.push_back(loop.step(controller, begin_s, log.status));
     loop.advance(log.steps.back().command);
     if (hooks.progress && planned_duration_s > 0.0) {
       hooks.progress(log.steps.back().time_s / planned_duration_s);
@@ -75,30 +102,21 @@ control::DriveLog drive_in_simulator(sim::Simulator& simulator, const TPose2D& w
 }
 
 std::string log_hash(const control::DriveLog& log) {
-  static_assert(std::endian::native == std::endian::little,
-                "the hash is over little-endian doubles");
-  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(),
-                                                                        EVP_MD_CTX_free);
-  if (!context || EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) != 1) {
-    throw std::runtime_error("SHA-256 is not available");
-  }
+  Sha256 hash;
   for (std::size_t i = 0; i < log.steps.size(); ++i) {
     const control::DriveStep& s = log.steps[i];
     const std::array<double, 9> row{static_cast<double>(i), s.true_pose.x,      s.true_pose.y,
                                     s.true_pose.phi,        s.estimated_pose.x, s.estimated_pose.y,
                                     s.estimated_pose.phi,   s.command.vx,       s.command.omega};
-    EVP_DigestUpdate(context.get(), row.data(), sizeof row);
+    hash.add(row.data(), sizeof row);
   }
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int size = 0;
-  EVP_DigestFinal_ex(context.get(), digest.data(), &size);
-  std::string hex;
-  constexpr char kDigits[] = "0123456789abcdef";
-  for (unsigned int i = 0; i < size; ++i) {
-    hex += kDigits[digest[i] >> 4];
-    hex += kDigits[digest[i] & 15];
-  }
-  return hex;
+  return hash.hex();
+}
+
+std::string sha256(std::string_view bytes) {
+  Sha256 hash;
+  hash.add(bytes.data(), bytes.size());
+  return hash.hex();
 }
 
 }  // namespace rovigo::app

@@ -1,14 +1,15 @@
 #pragma once
-// The closed loop: simulator, pose source, tracker. `record` and `drive` both run on it.
+// The closed loop: simulator, pose source, controller. `record`, `drive` and `track` run on it.
 
 #include <mrpt/obs/CObservation.h>
 
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "app/pose_source.h"
+#include "control/drive_controller.h"
 #include "control/drive_log.h"
-#include "control/tracker.h"
 #include "sim/simulator.h"
 
 namespace rovigo::app {
@@ -34,8 +35,8 @@ class DriveLoop {
 
   void advance(const TTwist2D& command);
   void stand_still(double seconds);
-  /// What the tracker wants now, as a step of the log whose time counts from `begin_s`.
-  control::DriveStep step(control::TrajectoryTracker& tracker, double begin_s,
+  /// What the controller wants now, as a step of the log whose time counts from `begin_s`.
+  control::DriveStep step(control::DriveController& controller, double begin_s,
                           control::TrackStatus& status);
   /// Where the rover truly is, in the map frame.
   TPose2D true_pose() const;
@@ -47,13 +48,16 @@ class DriveLoop {
   const DriveHooks& hooks_;
 };
 
-/// Stands still for a second (the gyro's bias can be learned), drives until the tracker ends the
+/// Stands still for a second (the gyro's bias can be learned), drives until the controller ends the
 /// drive, stands still for half a second. Control runs at 120 Hz of simulated time.
 control::DriveLog drive_in_simulator(sim::Simulator& simulator, const TPose2D& world_from_map,
-                                     PoseSource& poses, control::TrajectoryTracker& tracker,
+                                     PoseSource& poses, control::DriveController& controller,
                                      double planned_duration_s, const DriveHooks& hooks);
 
 /// SHA-256, hex, over the steps (index, true pose, estimate, command) as little-endian doubles.
 std::string log_hash(const control::DriveLog& log);
+
+/// SHA-256 of these bytes, hex.
+std::string sha256(std::string_view bytes);
 
 }  // namespace rovigo::app

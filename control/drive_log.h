@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "control/tracker.h"
+#include "control/drive_controller.h"
 
 namespace rovigo::control {
 

@@ -38,22 +38,6 @@ bool at_rest(const TTwist2D& twist) {
 
 }  // namespace
 
-const char* to_string(TrackStatus status) {
-  switch (status) {
-    case TrackStatus::kRunning:
-      return "running";
-    case TrackStatus::kReached:
-      return "reached";
-    case TrackStatus::kPoseLost:
-      return "pose_lost";
-    case TrackStatus::kNoProgress:
-      return "no_progress";
-    case TrackStatus::kTimedOut:
-      return "timed_out";
-  }
-  return "unknown";
-}
-
 struct TrajectoryTracker::Impl {
   Impl(const ControlConfig& config_in, const maps::RobotModel& robot,
        planning::Trajectory trajectory)

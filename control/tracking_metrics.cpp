@@ -41,6 +41,73 @@ double along(const TPose2D& reference, const TPose2D& truth) {
          (truth.y - reference.y) * std::sin(reference.phi);
 }
 
+/// When the plan is at its last position; turns in place may follow.
+double arrival_time_s(const planning::Trajectory& planned) {
+  std::size_t i = planned.points.size() - 1;
+  const TPoint2D end = maps::position_of(planned.points.back().pose);
+  while (i > 0 && maps::position_of(planned.points[i - 1].pose) == end) --i;
+  return planned.points[i].time_s;
+}
+
+/// Direction of travel when the goal is reached.
+double last_direction(const planning::Trajectory& planned) {
+  double direction = planned.points.back().pose.phi;
+  for (const auto& p : planned.points) {
+    if (p.speed_m_s > 0.0) direction = p.pose.phi;
+  }
+  return direction;
+}
+
+/// How the drive came to rest: overshoot and settling.
+void measure_arrival(const DriveLog& log, const planning::Trajectory& planned, DriveMetrics& m) {
+  constexpr double kSettledM = 0.005;
+  constexpr double kTimeSlackS = 1e-6;
+  const double arrival_s = arrival_time_s(planned);
+  const auto arrived = std::find_if(log.steps.begin(), log.steps.end(), [&](const DriveStep& s) {
+    return s.reference.time_s >= arrival_s - kTimeSlackS;
+  });
+  if (arrived == log.steps.end()) return;
+  const TPose2D goal(planned.points.back().pose.x, planned.points.back().pose.y,
+                     last_direction(planned));
+  const TPoint2D rest = maps::position_of(log.steps.back().true_pose);
+  for (auto step = arrived; step != log.steps.end(); ++step) {
+    m.overshoot_m = std::max(m.overshoot_m, along(goal, step->true_pose));
+    if (maps::distance(maps::position_of(step->true_pose), rest) > kSettledM) {
+      m.settling_s = step->time_s - arrived->time_s;
+    }
+  }
+}
+
+/// Second difference of the commanded speed, averaged over windows so that the steps of a sampled
+/// command do not count as jerk.
+double jerk_rms(const DriveLog& log) {
+  constexpr double kWindowS = 0.1;
+  std::vector<double> mean;
+  double sum = 0.0, until = log.steps.front().time_s + kWindowS;
+  int count = 0;
+  for (const DriveStep& step : log.steps) {
+    if (step.time_s >= until - 1e-9 && count > 0) {
+      mean.push_back(sum / count);
+      sum = 0.0;
+      count = 0;
+      until += kWindowS;
+    }
+    sum += step.command.vx;
+    ++count;
+  }
+  Spread jerk;
+  for (std::size_t i = 2; i < mean.size(); ++i) {
+    jerk.add((mean[i] - 2.0 * mean[i - 1] + mean[i - 2]) / (kWindowS * kWindowS));
+  }
+  return jerk.rms();
+}
+
+double success_by_length(const DriveLog& log, const DriveMetrics& m) {
+  if (log.status != TrackStatus::kReached || log.contact_events > 0) return 0.0;
+  const double longer = std::max(m.driven_length_m, m.path_length_m);
+  return longer > 0.0 ? m.path_length_m / longer : 1.0;
+}
+
 }  // namespace
 
 double cross_track_error_m(const planning::Trajectory& planned, const TPoint2D& point) {
@@ -115,6 +182,10 @@ DriveMetrics measure(const DriveLog& log, const planning::Trajectory& planned, c
   if (goal_heading_given) {
     m.final_heading_error_rad = std::abs(wrap_angle(last.true_pose.phi - goal.phi));
   }
+  if (!planned.points.empty()) measure_arrival(log, planned, m);
+  m.jerk_rms_m_s3 = jerk_rms(log);
+  if (m.planned_duration_s > 0.0) m.time_ratio = m.duration_s / m.planned_duration_s;
+  m.spl = success_by_length(log, m);
   return m;
 }
 

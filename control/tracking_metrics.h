@@ -27,6 +27,14 @@ struct DriveMetrics {
   double max_speed_m_s = 0.0;     ///< highest commanded speed
   double max_yaw_rate_rad_s = 0.0;
   bool goal_heading_given = false;
+  double overshoot_m = 0.0;  ///< farthest beyond the goal, along the path's last direction
+  /// From when the reference stands at the goal until the rover stays within 5 mm of where it ends.
+  double settling_s = 0.0;
+  double jerk_rms_m_s3 = 0.0;  ///< of the commanded speed, averaged over tenths of a second
+  double time_ratio = 0.0;     ///< duration by planned duration; 0 for a plan without duration
+  /// Success weighted by path length (Anderson et al. 2018): planned by driven length, at most 1;
+  /// 0 when the goal was not reached or something was touched.
+  double spl = 0.0;
 };
 
 /// Speed and turn rate at which a command counts as saturated.

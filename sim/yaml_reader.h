@@ -1,6 +1,6 @@
 #pragma once
 // Strict reading of small YAML files: every message names file and line, the value and the limit;
-// an unknown key is answered with the nearest valid one. Sim's own.
+// an unknown key is answered with the nearest valid one. For scenarios, routes and suites.
 
 #include <yaml-cpp/yaml.h>
 

@@ -79,6 +79,15 @@ struct DriveOptions : CommonOptions {
   std::optional<std::filesystem::path> report;
 };
 
+struct TrackOptions : CommonOptions {
+  std::string suite = "default";
+  std::optional<std::string> pose;  ///< perturbed or truth, instead of what the suite says
+  std::optional<std::string> shard;
+  std::vector<std::filesystem::path> merge;
+  std::optional<unsigned> threads;
+  std::optional<std::filesystem::path> report;
+};
+
 struct ExportOptions : CommonOptions {
   std::filesystem::path map;
   std::string format;
@@ -112,6 +121,7 @@ int run_localize(const LocalizeOptions& options);
 int run_info(const InfoOptions& options);
 int run_plan(const PlanOptions& options);
 int run_drive(const DriveOptions& options);
+int run_track(const TrackOptions& options);
 int run_export(const ExportOptions& options);
 int run_import(const ImportOptions& options);
 int run_evaluate_trajectory(const EvaluateTrajectoryOptions& options);

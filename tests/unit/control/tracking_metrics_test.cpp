@@ -69,5 +69,42 @@ TEST(TrackingMetrics, AnEmptyLogGivesThePlansFigures) {
   EXPECT_EQ(m.cross_track_max_m, 0.0);
 }
 
+TEST(TrackingMetrics, OvershootAndSettlingAreThoseAfterTheReferenceArrived) {
+  const auto plan = straight();
+  DriveLog log = beside(plan, 0.0);
+  log.status = TrackStatus::kReached;
+  // One second at the goal: 3 cm beyond it for half of it, then on it.
+  for (int i = 1; i <= 100; ++i) {
+    DriveStep s = log.steps.back();
+    s.time_s = plan.duration_s() + 0.01 * i;
+    s.true_pose.x = i <= 50 ? 2.03 : 2.0;
+    s.command = {};
+    log.steps.push_back(s);
+  }
+  const DriveMetrics m = measure(log, plan, {2, 0, 0}, true);
+  EXPECT_NEAR(m.overshoot_m, 0.03, 1e-6);
+  EXPECT_NEAR(m.settling_s, 0.5, 0.011);
+  EXPECT_NEAR(m.time_ratio, 1.0 + 1.0 / plan.duration_s(), 1e-6);
+  EXPECT_NEAR(m.spl, 2.0 / 2.06, 1e-3);
+  log.contact_events = 1;
+  EXPECT_EQ(measure(log, plan, {2, 0, 0}, true).spl, 0.0);
+}
+
+TEST(TrackingMetrics, JerkIsThatOfTheCommandedSpeed) {
+  const auto plan = straight();
+  DriveLog log;
+  for (int i = 0; i < 400; ++i) {  // v = t^3 / 6: its jerk is t
+    DriveStep s;
+    s.time_s = 0.01 * i;
+    s.command.vx = std::pow(s.time_s, 3) / 6.0;
+    log.steps.push_back(s);
+  }
+  double mean_square = 0.0;
+  for (int i = 0; i < 400; ++i) mean_square += std::pow(0.01 * i, 2) / 400.0;
+  EXPECT_NEAR(measure(log, plan, {2, 0, 0}, true).jerk_rms_m_s3, std::sqrt(mean_square), 0.1);
+  for (DriveStep& s : log.steps) s.command.vx = 0.4;
+  EXPECT_NEAR(measure(log, plan, {2, 0, 0}, true).jerk_rms_m_s3, 0.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace rovigo::control

@@ -1,0 +1,65 @@
+// rovigo track: the repeatable trajectory-tracking tests.
+
+#include "app/commands/options.h"
+#include "app/parallel.h"
+#include "app/resources.h"
+#include "app/simulated_drive.h"
+#include "app/track/track_result.h"
+#include "app/track/track_run.h"
+#include "maps/atomic_file.h"
+#include "maps/error.h"
+
+namespace rovigo::app {
+
+namespace {
+
+constexpr std::size_t kMaxSuiteBytes = std::size_t{1} << 20U;
+
+/// Shards belong together only when suite, settings and pose source are the same.
+std::string suite_hash(const std::filesystem::path& file, const RovigoConfig& config,
+                       const std::optional<std::string>& pose) {
+  std::string text = maps::read_file(file, kMaxSuiteBytes) + "\npose " + pose.value_or("") + "\n";
+  for (const SettingRow& row : list_settings(config)) text += row.key + " " + row.value + "\n";
+  return sha256(text);
+}
+
+TrackResult drive_suite(const TrackOptions& options) {
+  const RovigoConfig config = load_config(options.config, options.set);
+  const std::filesystem::path file = find_suite(options.suite);
+  const TrackBench bench(load_suite(file), config, options.pose);
+  TrackResult result;
+  result.suite = bench.suite().name;
+  result.suite_hash = suite_hash(file, config, options.pose);
+  if (options.shard) result.shard = parse_shard(*options.shard);
+
+  const std::vector<TrackCase> all = cases_of(bench.suite());
+  result.total_runs = all.size();
+  std::vector<TrackCase> mine;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!result.shard || result.shard->holds(i)) mine.push_back(all[i]);
+  }
+  result.runs.resize(mine.size());
+  Progress progress("tracking");
+  run_parallel(
+      mine.size(), options.threads.value_or(machine_threads()),
+      [&](std::size_t i) { result.runs[i] = run_json(bench.run(mine[i])); },
+      [&](double share) { progress.update(share); });
+  return result;
+}
+
+}  // namespace
+
+int run_track(const TrackOptions& options) {
+  const Console console(options.json);
+  if (!options.merge.empty() && options.shard) {
+    throw maps::InputError(
+        "--shard drives a share of a suite and --merge puts shares together; "
+        "give one of them");
+  }
+  const TrackResult result =
+      options.merge.empty() ? drive_suite(options) : merge_results(options.merge);
+  console.result(result_json(result), result_message(result), result_rows(result));
+  return failed_runs(result) == 0 ? kDone : kDidNotSucceed;
+}
+
+}  // namespace rovigo::app

@@ -1,0 +1,48 @@
+#include "app/drive_outcome.h"
+
+#include "app/console.h"
+#include "app/simulated_drive.h"
+
+namespace rovigo::app {
+
+Outcome outcome_of(const control::DriveLog& log, const control::DriveMetrics& m) {
+  if (log.contact_events > 0) {
+    return {"collision", 106,
+            "touched an obstacle " + std::to_string(log.contact_events) + " times on the way"};
+  }
+  switch (log.status) {
+    case control::TrackStatus::kReached:
+      return {"ok", 0,
+              "reached the goal, " + with_unit(m.final_position_error_m, 3, "m") + " off, after " +
+                  with_unit(m.driven_length_m, 2, "m") + " and " + with_unit(m.duration_s, 1, "s")};
+    case control::TrackStatus::kPoseLost:
+      return {"pose_lost", 104,
+              "stopped: no usable pose for too long; is the map still true to the place?"};
+    case control::TrackStatus::kNoProgress:
+      return {"no_progress", 105, "stopped: the rover was commanded to move and did not"};
+    case control::TrackStatus::kTimedOut:
+      return {"timed_out", 107, "stopped: the drive took far longer than planned"};
+    case control::TrackStatus::kRunning:
+      break;
+  }
+  return {"not_finished", 107, "the drive did not finish"};
+}
+
+nlohmann::ordered_json drive_json(const Outcome& outcome, const control::DriveLog& log,
+                                  const control::DriveMetrics& m) {
+  return {{"status", outcome.status},
+          {"code", outcome.code},
+          {"message", outcome.message},
+          {"path_length_m", m.path_length_m},
+          {"driven_length_m", m.driven_length_m},
+          {"duration_s", m.duration_s},
+          {"cross_track_rms_m", m.cross_track_rms_m},
+          {"cross_track_max_m", m.cross_track_max_m},
+          {"final_position_error_m", m.final_position_error_m},
+          {"final_heading_error_rad", m.final_heading_error_rad},
+          {"estimate_rms_m", m.estimate_rms_m},
+          {"collisions", log.contact_events},
+          {"log_hash", log_hash(log)}};
+}
+
+}  // namespace rovigo::app
