@@ -79,8 +79,7 @@ int run_drive(const DriveOptions& options) {
   if (planning::plans_with_rectangle(config.planning)) {
     throw maps::InputError(
         "planning.footprint = rectangle plans nearer to obstacles than a drive's errors allow: "
-        "look "
-        "at it with `rovigo plan`, drive with planning.footprint = circle");
+        "look at it with `rovigo plan`, drive with planning.footprint = circle");
   }
   const maps::SavedMap map = open_planning_map(options.map, console);
   planning::PlanRequest request = plan_request(options.route, map);
