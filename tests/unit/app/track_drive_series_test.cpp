@@ -20,9 +20,17 @@ TrackRun some_run() {
   return run;
 }
 
+/// A metre along x in a second.
+planning::Trajectory some_plan() {
+  planning::Trajectory plan;
+  plan.points.resize(2);
+  plan.points[1].time_s = 1.0;
+  plan.points[1].pose.x = 1.0;
+  return plan;
+}
+
 TEST(DriveSeries, TenSamplesASecondComeBackAsTheyWereWritten) {
-  const planning::Trajectory plan{{{.time_s = 0.0}, {.time_s = 1.0, .pose = {1, 0, 0}}}};
-  const DriveSeries series = series_of(some_run(), plan);
+  const DriveSeries series = series_of(some_run(), some_plan());
   EXPECT_EQ(series.time_s.size(), 10U);
   const test::TemporaryFolder folder;
   const std::string text = series_json({series, series}).dump();
@@ -33,9 +41,8 @@ TEST(DriveSeries, TenSamplesASecondComeBackAsTheyWereWritten) {
 }
 
 TEST(DriveSeries, DamagedFilesAreRefused) {
-  const planning::Trajectory plan{{{.time_s = 0.0}}};
   const test::TemporaryFolder folder;
-  auto list = series_json({series_of(some_run(), plan)});
+  auto list = series_json({series_of(some_run(), some_plan())});
   const std::string good = list.dump();
   for (std::size_t n = 0; n < good.size(); n += 29) {
     test::write_text(folder / "cut", good.substr(0, n));
