@@ -10,24 +10,14 @@
 #include "slam/features.h"
 #include "slam/pose_optimizer.h"
 #include "slam/ray_voter.h"
+#include "tests/support/pinhole.h"
 
 namespace rovigo::slam {
 namespace {
 
-CameraModel camera() {
-  mrpt::img::TCamera c;
-  c.ncols = 640;
-  c.nrows = 480;
-  c.setIntrinsicParamsFromValues(460, 460, 319.5, 239.5);
-  return CameraModel(c);
-}
+CameraModel camera() { return CameraModel(test::pinhole()); }
 
-Se3 forward_camera() {
-  Se3 s;
-  s.rotation << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  s.translation = {0.1, 0.0, 0.25};
-  return s;
-}
+Se3 forward_camera() { return test::looking_ahead(0.25, 0.1); }
 
 /// Blocks of random brightness with sensor noise: corners everywhere.
 CameraFrame busy_frame() {

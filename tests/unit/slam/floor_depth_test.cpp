@@ -5,27 +5,17 @@
 #include <cmath>
 #include <functional>
 
+#include "tests/support/pinhole.h"
+
 namespace rovigo::slam {
 namespace {
 
 constexpr double kHeightM = 0.25, kWallM = 2.0;
 const DepthConfig kConfig;
 
-CameraModel camera() {
-  mrpt::img::TCamera c;
-  c.ncols = 640;
-  c.nrows = 480;
-  c.setIntrinsicParamsFromValues(460, 460, 319.5, 239.5);
-  return CameraModel(c);
-}
+CameraModel camera() { return CameraModel(test::pinhole()); }
 
-/// Level, looking along x.
-Se3 level_from_camera() {
-  Se3 s;
-  s.rotation << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  s.translation = {0.0, 0.0, kHeightM};
-  return s;
-}
+Se3 level_from_camera() { return test::looking_ahead(kHeightM); }
 
 double floor_depth(int v) { return kHeightM * 460.0 / (v - 239.5); }
 

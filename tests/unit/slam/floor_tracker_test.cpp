@@ -5,23 +5,14 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/pinhole.h"
+
 namespace rovigo::slam {
 namespace {
 
-CameraModel camera() {
-  mrpt::img::TCamera c;
-  c.ncols = 640;
-  c.nrows = 480;
-  c.setIntrinsicParamsFromValues(460, 460, 319.5, 239.5);
-  return CameraModel(c);
-}
+CameraModel camera() { return CameraModel(test::pinhole()); }
 
-Se3 nominal() {
-  Se3 s;
-  s.rotation << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  s.translation = {0.1, 0.0, 0.25};
-  return s;
-}
+Se3 nominal() { return test::looking_ahead(0.25, 0.1); }
 
 /// The nominal camera tilted about the level frame's axes and raised.
 Se3 mounted(double roll, double pitch, double up_m) {

@@ -8,26 +8,14 @@
 
 #include "slam/depth_scan.h"
 #include "slam/ray_voter.h"
+#include "tests/support/pinhole.h"
 
 namespace rovigo::slam {
 namespace {
 
 constexpr double kCameraHeightM = 0.25;
 
-mrpt::img::TCamera intrinsics() {
-  mrpt::img::TCamera c;
-  c.ncols = 640;
-  c.nrows = 480;
-  c.setIntrinsicParamsFromValues(460, 460, 319.5, 239.5);
-  return c;
-}
-
-Se3 level_camera() {
-  Se3 s;
-  s.rotation << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  s.translation = {0.0, 0.0, kCameraHeightM};
-  return s;
-}
+Se3 level_camera() { return test::looking_ahead(kCameraHeightM); }
 
 /// Something across the whole view, from x0 to x1 ahead and between two heights.
 struct Slab {
@@ -132,7 +120,7 @@ class Mapping : public ::testing::Test {
     return maps::OccupancyGrid::is_unknown(value(g, x, y));
   }
 
-  CameraModel camera_{intrinsics()};
+  CameraModel camera_{test::pinhole()};
   GridConfig config_;
   DepthScanner scanner_{camera_, DepthConfig{}};
   RayVoter voter_{config_, DepthConfig{}};

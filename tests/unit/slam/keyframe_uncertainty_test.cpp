@@ -2,18 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/pinhole.h"
+
 namespace rovigo::slam {
 namespace {
 
-mrpt::img::TCamera any_camera() {
-  mrpt::img::TCamera camera;
-  camera.ncols = 640;
-  camera.nrows = 480;
-  camera.setIntrinsicParamsFromValues(460, 460, 320, 240);
-  return camera;
-}
-
-LandmarkMap empty_map() { return {SlamConfig{}, CameraModel(any_camera()), Se3{}}; }
+LandmarkMap empty_map() { return {SlamConfig{}, CameraModel(test::pinhole()), Se3{}}; }
 
 double position_sigma(const Keyframe& k) {
   return std::sqrt(k.covariance(0, 0) + k.covariance(1, 1));

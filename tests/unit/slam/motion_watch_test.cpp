@@ -5,27 +5,14 @@
 #include <cmath>
 
 #include "slam/surroundings.h"
+#include "tests/support/pinhole.h"
 
 namespace rovigo::slam {
 namespace {
 
 constexpr double kCameraHeightM = 0.25;
 
-mrpt::img::TCamera intrinsics() {
-  mrpt::img::TCamera c;
-  c.ncols = 320;
-  c.nrows = 240;
-  c.setIntrinsicParamsFromValues(290, 290, 159.5, 119.5);
-  return c;
-}
-
-/// Optical axis along base_link's x.
-Se3 base_from_camera() {
-  Se3 out;
-  out.rotation << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  out.translation = {0.0, 0.0, kCameraHeightM};
-  return out;
-}
+Se3 base_from_camera() { return test::looking_ahead(kCameraHeightM); }
 
 /// Something 0.4 m wide and as tall as a person, with its front at `x`.
 struct Body {
@@ -35,7 +22,7 @@ struct Body {
 /// What a camera at the origin that looks along x sees: floor, a wall at `wall_m` (0: none within
 /// range), and bodies.
 cv::Mat view_of(double wall_m, const std::vector<Body>& bodies) {
-  const CameraModel camera(intrinsics());
+  const CameraModel camera(test::pinhole(290, 320, 240));
   cv::Mat depth(camera.height(), camera.width(), CV_16UC1, cv::Scalar(0));
   for (int v = 0; v < depth.rows; ++v) {
     for (int u = 0; u < depth.cols; ++u) {
@@ -56,7 +43,7 @@ cv::Mat view_of(double wall_m, const std::vector<Body>& bodies) {
 class MotionWatchTest : public testing::Test {
  protected:
   MotionWatchTest()
-      : camera_(intrinsics()),
+      : camera_(test::pinhole(290, 320, 240)),
         map_(config_, camera_, base_from_camera()),
         scanner_(camera_, config_.depth),
         watch_(camera_, config_.depth) {

@@ -2,16 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/pinhole.h"
+
 namespace rovigo::slam {
 namespace {
-
-mrpt::img::TCamera any_camera() {
-  mrpt::img::TCamera camera;
-  camera.ncols = 640;
-  camera.nrows = 480;
-  camera.setIntrinsicParamsFromValues(460, 460, 320, 240);
-  return camera;
-}
 
 TEST(TrajectoryHistory, AFrameReplacesThePoseDeadReckonedForTheSameMoment) {
   TrajectoryHistory history;
@@ -19,7 +13,7 @@ TEST(TrajectoryHistory, AFrameReplacesThePoseDeadReckonedForTheSameMoment) {
   history.add(1.00, -1, Se3{}, true);
   history.add(1.02, -1, Se3{}, false);
   history.add(1.06, -1, Se3{}, true);
-  const LandmarkMap no_map(SlamConfig{}, CameraModel(any_camera()), Se3{});
+  const LandmarkMap no_map(SlamConfig{}, CameraModel(test::pinhole()), Se3{});
   const auto poses = history.poses(no_map);
   ASSERT_EQ(poses.size(), 3u);
   EXPECT_TRUE(poses[0].is_camera_frame);
