@@ -88,10 +88,11 @@ class PoseSampler final : public ob::StateSampler {
 };
 
 /// Turn, drive, turn; headings count up to their opposite.
-class TurnDriveTurn final : public ob::MotionValidator {
+class TurnDriveTurn final : public WholeMotionValidator {
  public:
+  using WholeMotionValidator::checkMotion;
   TurnDriveTurn(const ob::SpaceInformationPtr& info, const FootprintSpace& space)
-      : ob::MotionValidator(info), space_(space) {}
+      : WholeMotionValidator(info), space_(space) {}
 
   bool checkMotion(const ob::State* from, const ob::State* to) const override {
     const TPose2D a = pose_of(from), b = pose_of(to);
@@ -101,27 +102,14 @@ class TurnDriveTurn final : public ob::MotionValidator {
     return space_.drive_is_free(p, q) && space_.turn_is_free(p, facing(a.phi, along), along) &&
            space_.turn_is_free(q, along, facing(b.phi, along));
   }
-  bool checkMotion(const ob::State* a, const ob::State* b,
-                   std::pair<ob::State*, double>& last_valid) const override {
-    if (checkMotion(a, b)) return true;
-    last_valid.second = 0.0;
-    if (last_valid.first != nullptr) si_->copyState(last_valid.first, a);
-    return false;
-  }
 
  private:
   const FootprintSpace& space_;
 };
 
 ob::SpaceInformationPtr make_space(const FootprintProblem& problem, std::uint64_t seed) {
-  const auto& g = problem.space.centers().geometry();
   auto poses = std::make_shared<Poses>();
-  ob::RealVectorBounds bounds(2);
-  bounds.setLow(0, g.origin.x);
-  bounds.setLow(1, g.origin.y);
-  bounds.setHigh(0, g.origin.x + g.width * g.resolution_m);
-  bounds.setHigh(1, g.origin.y + g.height * g.resolution_m);
-  poses->setBounds(bounds);
+  poses->setBounds(bounds_of(problem.space.centers().geometry()));
   poses->setSubspaceWeight(1, kMetersPerRadian);
   poses->setStateSamplerAllocator([&problem, seed](const ob::StateSpace* s) {
     return std::make_shared<PoseSampler>(s, problem, seed);

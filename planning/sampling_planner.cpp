@@ -60,20 +60,14 @@ class SeededSampler final : public ob::StateSampler {
   std::mt19937_64 random_;
 };
 
-class ExactMotionValidator final : public ob::MotionValidator {
+class ExactMotionValidator final : public WholeMotionValidator {
  public:
+  using WholeMotionValidator::checkMotion;
   ExactMotionValidator(const ob::SpaceInformationPtr& info, const FreeSpace& space)
-      : ob::MotionValidator(info), free_(space) {}
+      : WholeMotionValidator(info), free_(space) {}
 
   bool checkMotion(const ob::State* a, const ob::State* b) const override {
     return free_.is_free(point_of(a), point_of(b));
-  }
-  bool checkMotion(const ob::State* a, const ob::State* b,
-                   std::pair<ob::State*, double>& last_valid) const override {
-    if (checkMotion(a, b)) return true;
-    last_valid.second = 0.0;
-    if (last_valid.first != nullptr) si_->copyState(last_valid.first, a);
-    return false;
   }
 
  private:
@@ -81,14 +75,8 @@ class ExactMotionValidator final : public ob::MotionValidator {
 };
 
 ob::SpaceInformationPtr make_space(const FreeSpace& space, std::uint64_t seed) {
-  const auto& g = space.geometry();
   auto plane = std::make_shared<Plane>(2);
-  ob::RealVectorBounds bounds(2);
-  bounds.setLow(0, g.origin.x);
-  bounds.setLow(1, g.origin.y);
-  bounds.setHigh(0, g.origin.x + g.width * g.resolution_m);
-  bounds.setHigh(1, g.origin.y + g.height * g.resolution_m);
-  plane->setBounds(bounds);
+  plane->setBounds(bounds_of(space.geometry()));
   plane->setStateSamplerAllocator([seed, &space](const ob::StateSpace* s) {
     return std::make_shared<SeededSampler>(s, space, seed);
   });

@@ -118,6 +118,23 @@ int iterations_of(PlannerKind kind, const OmplConfig& config) {
 
 }  // namespace
 
+ob::RealVectorBounds bounds_of(const maps::GridGeometry& g) {
+  ob::RealVectorBounds bounds(2);
+  bounds.setLow(0, g.origin.x);
+  bounds.setLow(1, g.origin.y);
+  bounds.setHigh(0, g.origin.x + g.width * g.resolution_m);
+  bounds.setHigh(1, g.origin.y + g.height * g.resolution_m);
+  return bounds;
+}
+
+bool WholeMotionValidator::checkMotion(const ob::State* from, const ob::State* to,
+                                       std::pair<ob::State*, double>& last_valid) const {
+  if (checkMotion(from, to)) return true;
+  last_valid.second = 0.0;
+  if (last_valid.first != nullptr) si_->copyState(last_valid.first, from);
+  return false;
+}
+
 std::vector<maps::Cell> passable_cells(const maps::Costmap& costmap) {
   std::vector<maps::Cell> cells;
   for (std::size_t i = 0; i < costmap.cells.size(); ++i) {
