@@ -24,7 +24,7 @@ std::optional<PlannerKind> parse_planner_kind(const std::string& text);
 struct AStarConfig {
   int connectivity = 8;           ///< 4 or 8 neighbours
   double soft_cost_weight = 1.0;  ///< a metre at the highest soft cost counts as 1 + this metres
-  double heuristic_weight = 1.0;  ///< above 1: at most this factor from optimal, and faster
+  double heuristic_weight = 1.0;  ///< above 1: at most this factor from optimal
   void describe(maps::SettingsVisitor& v);
 };
 
