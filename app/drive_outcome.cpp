@@ -8,7 +8,8 @@ namespace rovigo::app {
 Outcome outcome_of(const control::DriveLog& log, const control::DriveMetrics& m) {
   if (log.contact_events > 0) {
     return {"collision", 106,
-            "touched an obstacle " + std::to_string(log.contact_events) + " times on the way"};
+            "touched an obstacle " + std::to_string(log.contact_events) +
+                " times on the way, first \"" + log.touched + "\""};
   }
   switch (log.status) {
     case control::TrackStatus::kReached:

@@ -1,6 +1,7 @@
 #pragma once
 // What `plan` and `drive` share: from written points to a plan, and from a plan to JSON and words.
 
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -30,7 +31,8 @@ struct TimedPlan {
   double search_ms = 0.0;
   double total_ms = 0.0;
 };
-TimedPlan timed_plan(const planning::Planner& planner, planning::PlanRequest request);
+TimedPlan timed_plan(const std::function<planning::PlanResult(const planning::PlanRequest&)>& plan,
+                     planning::PlanRequest request);
 
 nlohmann::ordered_json plan_json(const TimedPlan& plan);
 std::vector<Row> plan_rows(const TimedPlan& plan);

@@ -98,6 +98,7 @@ control::DriveLog drive_in_simulator(sim::Simulator& simulator, const TPose2D& w
   }
   loop.stand_still(kStandAfterS);
   log.contact_events = simulator.truth().contact_events - contacts_before;
+  if (log.contact_events > 0) log.touched = simulator.truth().touched;
   return log;
 }
 

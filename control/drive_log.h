@@ -1,6 +1,7 @@
 #pragma once
 // What happened during one drive, step by step: the raw material of metrics and reports.
 
+#include <string>
 #include <vector>
 
 #include "control/drive_controller.h"
@@ -24,6 +25,7 @@ struct DriveStep {
 struct DriveLog {
   std::vector<DriveStep> steps;
   int contact_events = 0;
+  std::string touched;  ///< what was touched first; empty: nothing
   TrackStatus status = TrackStatus::kRunning;
 };
 

@@ -41,13 +41,14 @@ maps::InflationConfig inflation_for(const maps::RobotModel& robot, maps::Inflati
 }  // namespace
 
 PlanningContext::PlanningContext(const maps::OccupancyGrid& g, const maps::RobotModel& r,
-                                 const maps::InflationConfig& i, const PlannerConfig& c)
+                                 const maps::InflationConfig& i, const PlannerConfig& c,
+                                 const maps::Costmap* ready)
     : grid(g),
       robot(r),
       inflation(inflation_for(r, i, c)),
       config(validated(c)),
       kind(parse_planner_kind(c.planner).value_or(PlannerKind::kAStar)),
-      costmap(maps::inflate_safe(grid, inflation)),
+      costmap(ready ? *ready : maps::inflate_safe(grid, inflation)),
       search_grid(costmap, c.astar.connectivity),
       space(grid, costmap,
             i.map_mode == maps::MapMode::kEverything ? 0.0 : inflation.robot_radius_m) {

@@ -30,9 +30,11 @@ struct PlanningContext {
   /// Where the rectangle counts; `inflation` then has its inscribed radius.
   std::optional<FootprintSpace> footprint;
 
-  /// Throws maps::InputError for settings out of range.
+  /// Throws maps::InputError for settings out of range. `ready`: this costmap, not the grid
+  /// inflated.
   PlanningContext(const maps::OccupancyGrid& grid, const maps::RobotModel& robot,
-                  const maps::InflationConfig& inflation, const PlannerConfig& config);
+                  const maps::InflationConfig& inflation, const PlannerConfig& config,
+                  const maps::Costmap* ready = nullptr);
   PlanningContext(const PlanningContext&) = delete;  // `space` refers to its neighbours
   PlanningContext& operator=(const PlanningContext&) = delete;
 };

@@ -38,6 +38,10 @@ struct Planner::Impl {
 Planner::Planner(const maps::OccupancyGrid& grid, const maps::RobotModel& robot,
                  const maps::InflationConfig& inflation, const PlannerConfig& config)
     : impl_(new Impl{.context{grid, robot, inflation, config}, .pool{}}) {}
+Planner::Planner(const maps::OccupancyGrid& grid, const maps::Costmap& costmap,
+                 const maps::RobotModel& robot, const maps::InflationConfig& inflation,
+                 const PlannerConfig& config)
+    : impl_(new Impl{.context{grid, robot, inflation, config, &costmap}, .pool{}}) {}
 Planner::~Planner() = default;
 Planner::Planner(Planner&&) noexcept = default;
 Planner& Planner::operator=(Planner&&) noexcept = default;

@@ -65,6 +65,10 @@ class Planner {
   /// Throws maps::InputError for settings out of range. The grid is copied.
   Planner(const maps::OccupancyGrid& grid, const maps::RobotModel& robot,
           const maps::InflationConfig& inflation, const PlannerConfig& config);
+  /// The same on a costmap of the caller's: its impassable cells are closed, its soft costs count.
+  Planner(const maps::OccupancyGrid& grid, const maps::Costmap& costmap,
+          const maps::RobotModel& robot, const maps::InflationConfig& inflation,
+          const PlannerConfig& config);
   ~Planner();
   Planner(Planner&&) noexcept;
   Planner& operator=(Planner&&) noexcept;

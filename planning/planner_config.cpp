@@ -184,6 +184,13 @@ void PlannerConfig::describe(maps::SettingsVisitor& v) {
           .min = 0.0,
           .max = 10.0},
          escape_max_distance_m);
+  v.real({.name = "drive_margin_m",
+          .help = "What drives keep beyond robot_radius_m to obstacles and to ground nobody has "
+                  "seen, wherever the way allows: the errors of map and pose.",
+          .min = 0.0,
+          .max = 1.0,
+          .advanced = false},
+         drive_margin_m);
   astar.describe(v);
   ompl.describe(v);
   spline.describe(v);

@@ -65,6 +65,7 @@ struct PlannerConfig {
   std::string planner = "astar";       ///< text form of PlannerKind
   std::string footprint = "circle";    ///< or rectangle, for sampling planners: see footprint.h
   double escape_max_distance_m = 1.0;  ///< how far a start in the band may be from free ground
+  double drive_margin_m = 0.06;        ///< kept beyond robot_radius_m in drives: drive_planner.h
   AStarConfig astar;
   OmplConfig ompl;
   SplineConfig spline;

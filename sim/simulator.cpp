@@ -208,6 +208,7 @@ struct Simulator::Impl {
     const Eigen::Vector3d v = base_from_world * state.velocity;
     truth.twist = TTwist2D(v.x(), v.y(), (base_from_world * state.angular_velocity).z());
     truth.contact_events = body.contact_events();
+    if (truth.touched.empty() && truth.contact_events > 0) truth.touched = body.touched();
   }
 
   static BodyState at_rest(BodyState state) {

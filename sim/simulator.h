@@ -26,6 +26,7 @@ struct Truth {
   mrpt::poses::CPose3D world_from_base;
   TTwist2D twist;             ///< of base_link, in base_link
   int contact_events = 0;     ///< times the rover began to touch anything but the floor
+  std::string touched;        ///< what it touched first; empty: nothing so far
   bool carried = false;       ///< somebody holds it: its wheels stand whatever is commanded
   int kidnaps = 0;            ///< times it was carried away, the present one included
   bool camera_blind = false;  ///< covered, or no frames

@@ -9,6 +9,7 @@
 #include "app/resources.h"
 #include "app/simulated_drive.h"
 #include "maps/error.h"
+#include "planning/drive_planner.h"
 
 namespace rovigo::app {
 
@@ -84,8 +85,8 @@ int run_drive(const DriveOptions& options) {
   const maps::SavedMap map = open_planning_map(options.map, console);
   planning::PlanRequest request = plan_request(options.route, map);
   request.seed = options.seed;
-  const planning::Planner planner(map.grid, config.robot, config.inflation, config.planning);
-  const TimedPlan plan = timed_plan(planner, request);
+  const planning::DrivePlanner planner(map.grid, config.robot, config.inflation, config.planning);
+  const TimedPlan plan = timed_plan([&](const auto& r) { return planner.plan(r); }, request);
   if (plan.result.status != planning::PlanStatus::kOk) {
     console.result(plan_json(plan), plan_message(plan.result), plan_rows(plan));
     return kDidNotSucceed;

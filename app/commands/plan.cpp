@@ -54,7 +54,7 @@ int plan_batch(const PlanOptions& options, const maps::SavedMap& map, const Rovi
       request.start = {queries[i].start.x, queries[i].start.y, 0.0};
       request.goal = {queries[i].goal.x, queries[i].goal.y, 0.0};
       request.seed = options.seed;
-      line.update(plan_json(timed_plan(*planner, request)));
+      line.update(plan_json(timed_plan([&](const auto& r) { return planner->plan(r); }, request)));
     }
     std::printf("%s\n", line.dump().c_str());
   }
@@ -91,7 +91,7 @@ int run_plan(const PlanOptions& options) {
   planning::PlanRequest request = plan_request(options.route, map);
   request.seed = options.seed;
   const planning::Planner planner(map.grid, config.robot, config.inflation, config.planning);
-  const TimedPlan plan = timed_plan(planner, request);
+  const TimedPlan plan = timed_plan([&](const auto& r) { return planner.plan(r); }, request);
   if (options.path && plan.result.status == planning::PlanStatus::kOk) {
     write_path_csv(*options.path, plan.result.trajectory);
   }
