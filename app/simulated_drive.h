@@ -21,6 +21,7 @@ struct DriveHooks {
 
 inline constexpr double kStandBeforeS = 1.0;  ///< the gyro's bias can be learned
 inline constexpr double kStandAfterS = 0.5;
+inline constexpr double kDriveCameraHz = 15.0;  ///< while it drives on poses from the camera
 
 /// One simulated drive, advanced a command period (1/120 s of simulated time) at a time.
 class DriveLoop {

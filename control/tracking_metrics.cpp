@@ -78,6 +78,20 @@ void measure_arrival(const DriveLog& log, const planning::Trajectory& planned, D
   }
 }
 
+int reversals_at(const TPoint2D& goal, const DriveLog& log) {
+  constexpr double kAtGoalM = 0.02;
+  constexpr double kTurningRadS = 0.15;
+  int reversals = 0;
+  double last = 0.0;
+  for (const DriveStep& s : log.steps) {
+    if (maps::distance(maps::position_of(s.true_pose), goal) >= kAtGoalM) continue;
+    if (std::abs(s.true_twist.omega) < kTurningRadS) continue;
+    reversals += s.true_twist.omega * last < 0.0 ? 1 : 0;
+    last = s.true_twist.omega;
+  }
+  return reversals;
+}
+
 /// Second difference of the commanded speed, averaged over windows so that the steps of a sampled
 /// command do not count as jerk.
 double jerk_rms(const DriveLog& log) {
@@ -183,6 +197,7 @@ DriveMetrics measure(const DriveLog& log, const planning::Trajectory& planned, c
     m.final_heading_error_rad = std::abs(wrap_angle(last.true_pose.phi - goal.phi));
   }
   if (!planned.points.empty()) measure_arrival(log, planned, m);
+  m.goal_reversals = reversals_at(maps::position_of(goal), log);
   m.jerk_rms_m_s3 = jerk_rms(log);
   if (m.planned_duration_s > 0.0) m.time_ratio = m.duration_s / m.planned_duration_s;
   m.spl = success_by_length(log, m);

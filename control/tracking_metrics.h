@@ -30,6 +30,8 @@ struct DriveMetrics {
   double overshoot_m = 0.0;  ///< farthest beyond the goal, along the path's last direction
   /// From when the reference stands at the goal until the rover stays within 5 mm of where it ends.
   double settling_s = 0.0;
+  /// Changes of turning direction within 2 cm of the goal, slower turns than 0.15 rad/s aside.
+  int goal_reversals = 0;
   double jerk_rms_m_s3 = 0.0;  ///< of the commanded speed, averaged over tenths of a second
   double time_ratio = 0.0;     ///< duration by planned duration; 0 for a plan without duration
   /// Success weighted by path length (Anderson et al. 2018): planned by driven length, at most 1;

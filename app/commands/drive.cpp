@@ -4,6 +4,7 @@
 
 #include "app/commands/options.h"
 #include "app/drive_outcome.h"
+#include "app/ground.h"
 #include "app/plan_query.h"
 #include "app/report/drive_report.h"
 #include "app/resources.h"
@@ -14,48 +15,6 @@
 namespace rovigo::app {
 
 namespace {
-
-constexpr double kRaisedWallHeightM = 1.0;
-
-/// Where the drive happens: the world asked for, the map's own, or walls raised from its cells.
-struct Ground {
-  sim::World world;
-  std::string name;
-  TPose2D world_from_map;
-};
-
-Ground open_ground(const DriveOptions& options, const maps::SavedMap& map) {
-  const auto& origin = map.metadata.simulation;
-  const TPose2D world_from_map = origin ? origin->world_from_map : TPose2D();
-  if (options.world) return {open_world(*options.world), *options.world, world_from_map};
-  if (origin) return {open_world(origin->world), origin->world, world_from_map};
-  return {sim::World::from_grid(map.grid, kRaisedWallHeightM), "walls raised from the map",
-          TPose2D()};
-}
-
-std::unique_ptr<PoseSource> open_pose_source(const std::string& kind, const RovigoConfig& config,
-                                             const Ground& ground, const maps::SavedMap& map,
-                                             const sim::Simulator& simulator,
-                                             const DriveOptions& options, const TPose2D& start) {
-  slam::Rig rig;
-  rig.camera = simulator.rig().camera;
-  rig.base_from_camera = simulator.rig().base_from_camera;
-  rig.has_extrinsics = rig.has_wheels = rig.has_imu = true;
-  if (kind == "slam") {
-    if (map.keyframes.empty()) {
-      throw maps::InputError(
-          options.map.string() +
-          ": has no keyframes to localise in; use --pose odometry, perturbed or truth");
-    }
-    return slam_poses(config.slam, rig, map, start);
-  }
-  if (kind == "truth") return true_poses(simulator, ground.world_from_map);
-  if (kind == "perturbed") {
-    return perturbed_poses(simulator, ground.world_from_map, open_scenario(options.scenario),
-                           options.seed);
-  }
-  return odometry_poses(config.slam, rig, map.grid, start);
-}
 
 std::vector<Row> drive_rows(const control::DriveLog& log, const control::DriveMetrics& m) {
   return {{"driven", with_unit(m.driven_length_m, 2, "m") + " of " +
@@ -101,7 +60,7 @@ int run_drive(const DriveOptions& options) {
   }
   console.say(plan_message(plan.result));
 
-  const Ground ground = open_ground(options, map);
+  const Ground ground = ground_of(map, options.world);
   const std::string pose_kind = options.pose.value_or(map.keyframes.empty() ? "odometry" : "slam");
   const TPose2D start = plan.result.trajectory.points.front().pose;
   sim::SimulatorOptions simulation;
@@ -109,10 +68,12 @@ int run_drive(const DriveOptions& options) {
   simulation.scenario = open_scenario(options.scenario);
   simulation.world_from_base = maps::compose(ground.world_from_map, start);
   simulation.seed = options.seed;
-  simulation.camera_rate_hz = 15.0;
-  simulation.camera_enabled = pose_kind == "slam" || pose_kind == "odometry";
+  simulation.camera_rate_hz = kDriveCameraHz;
+  simulation.camera_enabled = needs_camera(pose_kind);
   sim::Simulator simulator(ground.world, simulation);
-  const auto poses = open_pose_source(pose_kind, config, ground, map, simulator, options, start);
+  const auto poses = open_poses(
+      {.kind = pose_kind, .map_name = options.map.string(), .start = start, .seed = options.seed},
+      config, map, ground.world_from_map, simulator, simulation.scenario);
 
   control::TrajectoryTracker tracker(config.control, config.robot, plan.result.trajectory);
   if (pose_kind == "slam" && !look_around(simulator, *poses, start)) {

@@ -50,7 +50,7 @@ TrackPageInput drive_suite(const TrackOptions& options) {
         const TrackRun run = bench.run(mine[i]);
         result.runs[i] = run_json(run);
         if (!options.report) return;
-        out.series[i] = series_of(run, bench.planned(mine[i]).trajectory);
+        out.series[i] = series_of(run);
         write_trajectories(*options.report, run);
       },
       [&](double share) { progress.update(share); });

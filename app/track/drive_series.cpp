@@ -56,7 +56,8 @@ bool read_one(const Json& object, DriveSeries& s) {
 
 }  // namespace
 
-DriveSeries series_of(const TrackRun& run, const planning::Trajectory& planned) {
+DriveSeries series_of(const TrackRun& run) {
+  const planning::Trajectory& planned = run.track->trajectory;
   DriveSeries s;
   s.name = run.what.name;
   s.seed = run.what.seed;

@@ -20,7 +20,7 @@ struct DriveSeries {
 };
 
 /// Ten samples a second, rounded to a tenth of a millimetre; speed and turn rate as commanded.
-DriveSeries series_of(const TrackRun& run, const planning::Trajectory& planned);
+DriveSeries series_of(const TrackRun& run);
 
 nlohmann::ordered_json series_json(const std::vector<DriveSeries>& series);
 /// The series of a report's drives.json. Throws InputError saying what is wrong with it.

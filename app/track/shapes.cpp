@@ -5,9 +5,6 @@
 #include <cmath>
 #include <functional>
 
-#include "app/resources.h"
-#include "app/route_drive.h"
-#include "maps/error.h"
 #include "planning/timing.h"
 #include "sim/random.h"
 
@@ -105,7 +102,8 @@ planning::TimingProblem geometry_of(const TrackShape& s) {
   return turtle.take();
 }
 
-/// Walls farther away than any shape is long.
+}  // namespace
+
 sim::World empty_hall() {
   constexpr int kCells = 100;
   maps::OccupancyGrid grid({0.5, {-25.0, -25.0}, kCells, kCells}, maps::OccupancyGrid::kFree);
@@ -116,36 +114,13 @@ sim::World empty_hall() {
   return sim::World::from_grid(grid, 0.5);
 }
 
-PlannedTrack plan_to_goal(const std::string& name, const TrackShape& shape,
-                          const RovigoConfig& config) {
-  const sim::World world = open_world(shape.world);
-  const planning::Planner planner = route_planner(world, config, config.robot.max_speed_m_s);
-  planning::PlanRequest request;
-  request.start = world.start();
-  request.start_heading_given = true;
-  request.goal = {shape.goal_x_m, shape.goal_y_m, 0.0};
-  planning::PlanResult plan = planner.plan(request);
-  if (plan.status != planning::PlanStatus::kOk) {
-    throw maps::InputError("trajectory \"" + name + "\" in world \"" + shape.world +
-                           "\" cannot be driven: " + plan.message);
-  }
-  return {world, std::move(plan.trajectory), world.start()};
-}
-
-}  // namespace
-
-PlannedTrack plan_track(const std::string& name, const TrackShape& shape,
-                        const RovigoConfig& config) {
-  PlannedTrack track =
-      shape.shape == "goal"
-          ? plan_to_goal(name, shape, config)
-          : PlannedTrack{
-                empty_hall(),
-                planning::time_path(geometry_of(shape),
-                                    planning::limits_of(config.robot, config.planning.timing),
-                                    config.planning.timing),
-                {}};
-  track.start.phi = maps::wrap_angle(track.start.phi + shape.first_heading_off_deg * kPi / 180.0);
+PlannedTrack plan_shape(const TrackShape& shape, const RovigoConfig& config) {
+  const auto& timing = config.planning.timing;
+  PlannedTrack track{
+      empty_hall(),
+      planning::time_path(geometry_of(shape), planning::limits_of(config.robot, timing), timing),
+      {}};
+  track.start.phi = maps::wrap_angle(shape.first_heading_off_deg * kPi / 180.0);
   return track;
 }
 

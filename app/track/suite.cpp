@@ -1,6 +1,7 @@
 #include "app/track/suite.h"
 
 #include <algorithm>
+#include <numeric>
 #include <tuple>
 
 #include "app/console.h"
@@ -79,6 +80,21 @@ std::uint64_t read_seed(const std::string& file, const YAML::Node& node) {
   return seed;
 }
 
+/// A seed, a list of them, or `{from: 1, to: 100}`.
+std::vector<std::uint64_t> read_seeds(const std::string& file, const YAML::Node& node) {
+  const auto seed = [&](const YAML::Node& item) { return read_seed(file, item); };
+  if (!node.IsMap()) return read_list(file, node, "seeds", seed);
+  sim::require_known_keys(file, node, {"from", "to"});
+  if (!node["from"] || !node["to"]) fail_at(file, node, "a range of seeds needs from and to");
+  const std::uint64_t from = seed(node["from"]), to = seed(node["to"]);
+  if (to < from || to - from >= kMaxRuns) {
+    fail_at(file, node, "a range of seeds must hold 1 to 100000 seeds");
+  }
+  std::vector<std::uint64_t> seeds(to - from + 1);
+  std::iota(seeds.begin(), seeds.end(), from);
+  return seeds;
+}
+
 TrackGroup read_group(const std::string& file, const YAML::Node& node,
                       const std::vector<std::string>& trajectories) {
   if (!node.IsMap()) fail_at(file, node, "a group is a list of `key: value` lines");
@@ -93,7 +109,7 @@ TrackGroup read_group(const std::string& file, const YAML::Node& node,
     group.scenario = n.Scalar();
   }
   if (const auto n = node["pose"]) {
-    group.pose = read_choice(file, n, "pose source", {"perturbed", "truth"});
+    group.pose = read_choice(file, n, "pose source", {"perturbed", "truth", "slam", "odometry"});
   }
   group.trajectories = trajectories;
   if (const auto n = node["trajectories"]) {
@@ -110,10 +126,7 @@ TrackGroup read_group(const std::string& file, const YAML::Node& node,
     group.speeds_m_s = read_list(file, n, "speeds_m_s",
                                  [&](const YAML::Node& item) { return read_speed(file, item); });
   }
-  if (const auto n = node["seeds"]) {
-    group.seeds =
-        read_list(file, n, "seeds", [&](const YAML::Node& item) { return read_seed(file, item); });
-  }
+  if (const auto n = node["seeds"]) group.seeds = read_seeds(file, n);
   if (const auto n = node["limits"]) sim::read_settings(file, n, group.limits);
   return group;
 }
@@ -151,6 +164,7 @@ TrackSuite parse_suite(const std::string& yaml, const std::string& file) {
   sim::require_known_keys(file, root, {"name", "trajectories", "groups"});
   TrackSuite suite;
   suite.name = std::filesystem::path(file).stem().string();
+  suite.folder = std::filesystem::path(file).parent_path();
   if (root["name"]) suite.name = read_name(file, root["name"], "name");
   suite.trajectories = read_trajectories(file, root);
   std::vector<std::string> known;

@@ -8,7 +8,7 @@ void TrackShape::describe(maps::SettingsVisitor& v) {
   v.text({.name = "shape",
           .help = "What is driven.",
           .choices = {"straight", "circle", "eight", "square", "slalom", "turn", "curve", "random",
-                      "goal"}},
+                      "goal", "mission", "recorded"}},
          shape);
   v.real({.name = "length_m",
           .help = "Of the whole; of one side or leg for square and turn.",
@@ -30,8 +30,15 @@ void TrackShape::describe(maps::SettingsVisitor& v) {
           .min = -180,
           .max = 180},
          first_heading_off_deg);
-  v.text({.name = "world", .help = "Where the goal lies: a world's name, random:SEED or a file."},
+  v.text({.name = "world",
+          .help = "Where goal or mission lie: a world's name, random:SEED or a file; for missions "
+                  "also random, another one for each seed."},
          world);
+  v.text({.name = "map",
+          .help = "Goal, mission or recorded drive on this map file, relative to the suite."},
+         map);
+  v.text({.name = "file", .help = "Recorded drive without a map: a TUM trajectory of base_link."},
+         file);
   v.real({.name = "goal_x_m", .help = "The goal, world frame.", .min = -1000, .max = 1000},
          goal_x_m);
   v.real({.name = "goal_y_m", .help = "The goal, world frame.", .min = -1000, .max = 1000},
@@ -49,6 +56,11 @@ void TrackLimits::describe(maps::SettingsVisitor& v) {
          goal_m);
   v.real({.name = "goal_heading_rad", .help = "Heading error at the end.", .min = 0, .max = 3.2},
          goal_heading_rad);
+  v.real({.name = "goal_reversals",
+          .help = "Changes of turning direction at the goal.",
+          .min = 0,
+          .max = kFar},
+         goal_reversals);
   v.real({.name = "min_duration_s", .help = "Shortest drive.", .min = 0, .max = 1e5},
          min_duration_s);
   v.real({.name = "max_duration_s", .help = "Longest drive.", .min = 0, .max = 1e5},

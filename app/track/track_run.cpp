@@ -4,14 +4,20 @@
 
 #include "app/console.h"
 #include "app/drive_outcome.h"
+#include "app/ground.h"
 #include "app/resources.h"
 #include "app/simulated_drive.h"
+#include "app/track/missions.h"
+#include "app/track/recorded_path.h"
 #include "control/reference_drive.h"
 #include "control/tracker.h"
+#include "maps/error.h"
 
 namespace rovigo::app {
 
 namespace {
+
+constexpr const char* kRandomWorld = "random";
 
 std::unique_ptr<control::DriveController> make_controller(const TrackCase& what,
                                                           const RovigoConfig& config,
@@ -35,13 +41,40 @@ TrackBench::TrackBench(TrackSuite suite, const RovigoConfig& config,
     if (pose) group.pose = *pose;
     scenarios_.try_emplace(group.scenario, open_scenario(group.scenario));
     for (const auto& name : group.trajectories) {
+      const TrackShape& shape = suite_.trajectories.at(name);
+      open_ground(group, name);
+      if (shape.shape == "mission") continue;
       for (const double speed : group.speeds_m_s) {
         if (planned_.contains({name, speed})) continue;
-        planned_.emplace(std::pair(name, speed),
-                         plan_track(name, suite_.trajectories.at(name), config_at(speed)));
+        planned_[{name, speed}] =
+            std::make_shared<const PlannedTrack>(plan_ahead(name, config_at(speed)));
       }
     }
   }
+}
+
+PlannedTrack TrackBench::plan_ahead(const std::string& trajectory,
+                                    const RovigoConfig& config) const {
+  const TrackShape& shape = suite_.trajectories.at(trajectory);
+  const auto map = maps_.find(trajectory);
+  if (shape.shape == "goal") return plan_goal(trajectory, shape, map->second, config);
+  if (shape.shape != "recorded") return plan_shape(shape, config);
+  return plan_recorded(trajectory, shape, suite_.folder, map == maps_.end() ? nullptr : map->second,
+                       config);
+}
+
+void TrackBench::open_ground(const TrackGroup& group, const std::string& trajectory) {
+  const TrackShape& shape = suite_.trajectories.at(trajectory);
+  const bool on_ground = shape.shape == "goal" || shape.shape == "mission";
+  const bool has_ground = on_ground || (shape.shape == "recorded" && !shape.map.empty());
+  if (needs_camera(group.pose) && (!has_ground || shape.map.empty())) {
+    throw maps::InputError("group \"" + group.name + "\": pose " + group.pose +
+                           " needs a map to localise in, and trajectory \"" + trajectory +
+                           "\" has none; give it `map: FILE` or take pose perturbed or truth");
+  }
+  const bool drawn = shape.shape == "mission" && shape.map.empty() && shape.world == kRandomWorld;
+  if (!has_ground || drawn || maps_.contains(trajectory)) return;
+  maps_[trajectory] = open_track_map(shape, suite_.folder, config_);
 }
 
 RovigoConfig TrackBench::config_at(double speed_m_s) const {
@@ -50,39 +83,46 @@ RovigoConfig TrackBench::config_at(double speed_m_s) const {
   return config;
 }
 
-const PlannedTrack& TrackBench::planned(const TrackCase& what) const {
-  return planned_.at({what.trajectory, what.speed_m_s});
+std::shared_ptr<const PlannedTrack> TrackBench::plan(const TrackCase& what) const {
+  const TrackShape& shape = suite_.trajectories.at(what.trajectory);
+  if (shape.shape != "mission") return planned_.at({what.trajectory, what.speed_m_s});
+  const auto map = maps_.find(what.trajectory);
+  return std::make_shared<const PlannedTrack>(
+      draw_mission(what.trajectory, shape, map == maps_.end() ? nullptr : map->second,
+                   config_at(what.speed_m_s), what.seed));
 }
 
-control::DriveLog TrackBench::drive(const TrackCase& what) const {
+control::DriveLog TrackBench::drive(const TrackCase& what, const PlannedTrack& track) const {
   const TrackGroup& group = suite_.groups[what.group];
-  const PlannedTrack& track = planned(what);
   const RovigoConfig config = config_at(what.speed_m_s);
   sim::SimulatorOptions simulation;
   simulation.robot = config.robot;
   simulation.scenario = scenarios_.at(group.scenario);
-  simulation.world_from_base = track.start;
+  simulation.world_from_base = maps::compose(track.world_from_map, track.start);
   simulation.seed = what.seed;
-  simulation.camera_enabled = false;
+  simulation.camera_rate_hz = kDriveCameraHz;
+  simulation.camera_enabled = needs_camera(group.pose);
   sim::Simulator simulator(track.world, simulation);
-  const TPose2D world_from_map;
-  const auto poses =
-      group.pose == "truth"
-          ? true_poses(simulator, world_from_map)
-          : perturbed_poses(simulator, world_from_map, scenarios_.at(group.scenario), what.seed);
+  const maps::SavedMap none;
+  const auto poses = open_poses(
+      {.kind = group.pose, .map_name = what.trajectory, .start = track.start, .seed = what.seed},
+      config, track.map ? *track.map : none, track.world_from_map, simulator, simulation.scenario);
   const auto controller = make_controller(what, config, track.trajectory);
-  return drive_in_simulator(simulator, world_from_map, *poses, *controller,
+  // Not recognised: the drive then says that the pose is lost.
+  if (group.pose == "slam") look_around(simulator, *poses, track.start);
+  return drive_in_simulator(simulator, track.world_from_map, *poses, *controller,
                             track.trajectory.duration_s(), {});
 }
 
 TrackRun TrackBench::run(const TrackCase& what) const {
-  const planning::Trajectory& planned_trajectory = planned(what).trajectory;
   const maps::RobotModel robot = config_at(what.speed_m_s).robot;
   TrackRun run;
   run.what = what;
-  run.log = drive(what);
-  run.metrics = control::measure(run.log, planned_trajectory, planned_trajectory.points.back().pose,
-                                 true, {robot.max_speed_m_s, robot.max_yaw_rate_rad_s});
+  run.track = plan(what);
+  run.log = drive(what, *run.track);
+  const planning::Trajectory& planned = run.track->trajectory;
+  run.metrics = control::measure(run.log, planned, planned.points.back().pose, true,
+                                 {robot.max_speed_m_s, robot.max_yaw_rate_rad_s});
   run.failures = failures_of(suite_.groups[what.group].limits, run.log, run.metrics);
   return run;
 }
@@ -101,6 +141,7 @@ std::vector<std::string> failures_of(const TrackLimits& limits, const control::D
   at_most("cross_track_max_m", m.cross_track_max_m, limits.cross_track_max_m);
   at_most("final_position_error_m", m.final_position_error_m, limits.goal_m);
   at_most("final_heading_error_rad", m.final_heading_error_rad, limits.goal_heading_rad);
+  at_most("goal_reversals", m.goal_reversals, limits.goal_reversals);
   at_most("duration_s", m.duration_s, limits.max_duration_s);
   if (!(m.duration_s >= limits.min_duration_s)) {
     failures.push_back("duration_s " + with_unit(m.duration_s, 4, "") + " below " +
@@ -121,6 +162,7 @@ nlohmann::ordered_json run_json(const TrackRun& run) {
                                        {"heading_rms_rad", m.heading_rms_rad},
                                        {"overshoot_m", m.overshoot_m},
                                        {"settling_s", m.settling_s},
+                                       {"goal_reversals", m.goal_reversals},
                                        {"jerk_rms_m_s3", m.jerk_rms_m_s3},
                                        {"saturation_share", m.saturation_share},
                                        {"planned_duration_s", m.planned_duration_s},

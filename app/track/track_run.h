@@ -17,12 +17,14 @@ namespace rovigo::app {
 
 struct TrackRun {
   TrackCase what;
+  std::shared_ptr<const PlannedTrack> track;
   control::DriveLog log;
   control::DriveMetrics metrics;
   std::vector<std::string> failures;  ///< each names figure, value and limit; empty: passed
 };
 
-/// A suite with everything its runs need opened and planned, so that no run can end in bad input.
+/// A suite with everything its runs need opened and, missions aside, planned, so that no run ends
+/// in bad input.
 class TrackBench {
  public:
   /// `pose` overrides the groups' pose source. Throws InputError.
@@ -31,16 +33,20 @@ class TrackBench {
   const TrackSuite& suite() const { return suite_; }
   /// May be called from several threads at once.
   TrackRun run(const TrackCase& what) const;
-  const PlannedTrack& planned(const TrackCase& what) const;
 
  private:
   RovigoConfig config_at(double speed_m_s) const;
-  control::DriveLog drive(const TrackCase& what) const;
+  PlannedTrack plan_ahead(const std::string& trajectory, const RovigoConfig& config) const;
+  void open_ground(const TrackGroup& group, const std::string& trajectory);
+  std::shared_ptr<const PlannedTrack> plan(const TrackCase& what) const;
+  control::DriveLog drive(const TrackCase& what, const PlannedTrack& track) const;
 
   TrackSuite suite_;
   RovigoConfig config_;
   std::map<std::string, sim::Scenario> scenarios_;
-  std::map<std::pair<std::string, double>, PlannedTrack> planned_;
+  std::map<std::string, std::shared_ptr<const maps::SavedMap>> maps_;  ///< of goals and missions
+  /// All but missions, which are drawn by the seed.
+  std::map<std::pair<std::string, double>, std::shared_ptr<const PlannedTrack>> planned_;
 };
 
 /// What a run misses, by its group's limits.

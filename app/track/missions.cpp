@@ -1,0 +1,137 @@
+#include "app/track/missions.h"
+
+#include <vector>
+
+#include "app/ground.h"
+#include "app/resources.h"
+#include "maps/distance_field.h"
+#include "maps/error.h"
+#include "maps/zones.h"
+#include "planning/drive_planner.h"
+#include "sim/random.h"
+
+namespace rovigo::app {
+
+namespace {
+
+constexpr double kLowestObstacleM = 0.02;
+constexpr double kHeadroomM = 0.1;
+constexpr double kShortestM = 1.0;
+constexpr int kDraws = 200;
+
+maps::SavedMap true_map(const std::string& world, const RovigoConfig& config) {
+  maps::SavedMap map;
+  map.grid = sim::true_grid(open_world(world), config.slam.grid.grid_resolution_m, kLowestObstacleM,
+                            config.robot.body_height_m + kHeadroomM);
+  map.metadata.simulation = {.world = world, .world_from_map = TPose2D()};
+  return map;
+}
+
+planning::DrivePlanner planner_on(const maps::SavedMap& map, const RovigoConfig& config) {
+  return {map.grid, config.robot, config.inflation, config.planning};
+}
+
+PlannedTrack track_of(const planning::PlanResult& plan, std::shared_ptr<const maps::SavedMap> map) {
+  const Ground ground = ground_of(*map, std::nullopt);
+  return {ground.world, plan.trajectory, plan.trajectory.points.front().pose, ground.world_from_map,
+          std::move(map)};
+}
+
+/// Where the rover may stand, and whichever way it faces keeps the margin of drives.
+std::vector<TPoint2D> places_on(const maps::OccupancyGrid& grid, const RovigoConfig& config) {
+  const maps::DistanceField field = maps::distance_to_occupied(grid);
+  const double room_m = config.robot.robot_radius_m + config.planning.drive_margin_m;
+  std::vector<TPoint2D> places;
+  for (int y = 0; y < grid.geometry.height; ++y) {
+    for (int x = 0; x < grid.geometry.width; ++x) {
+      const maps::Cell cell{x, y};
+      if (!maps::OccupancyGrid::is_free(grid.at(cell))) continue;
+      if (static_cast<double>(field.at(cell)) >= room_m) {
+        places.push_back(grid.geometry.center_of(cell));
+      }
+    }
+  }
+  return places;
+}
+
+class MissionDraw {
+ public:
+  MissionDraw(std::vector<TPoint2D> places, std::uint64_t seed)
+      : places_(std::move(places)), random_(sim::derive_seed(seed, kStream)) {}
+
+  planning::PlanRequest next() {
+    planning::PlanRequest request;
+    request.start = place();
+    request.goal = place();
+    request.start_heading_given = true;
+    request.goal_heading_given = random_.uniform(0.0, 1.0) < 0.5;
+    return request;
+  }
+
+ private:
+  static constexpr std::uint64_t kStream = 41;
+  TPose2D place() {
+    const TPoint2D& at = places_[random_.bits() % places_.size()];
+    return {at.x, at.y, random_.uniform(-maps::kPi, maps::kPi)};
+  }
+  std::vector<TPoint2D> places_;
+  sim::RandomStream random_;
+};
+
+}  // namespace
+
+std::shared_ptr<const maps::SavedMap> open_track_map(const TrackShape& shape,
+                                                     const std::filesystem::path& folder,
+                                                     const RovigoConfig& config) {
+  if (shape.map.empty()) {
+    return std::make_shared<const maps::SavedMap>(true_map(shape.world, config));
+  }
+  std::vector<std::string> warnings;  // what a whole map file has none of
+  auto map = std::make_shared<maps::SavedMap>(maps::load_any_map(folder / shape.map, warnings));
+  maps::apply_zones(map->grid, map->zones);
+  return map;
+}
+
+PlannedTrack plan_goal(const std::string& name, const TrackShape& shape,
+                       std::shared_ptr<const maps::SavedMap> map, const RovigoConfig& config) {
+  planning::PlanRequest request;
+  if (shape.map.empty()) {
+    request.start = open_world(shape.world).start();
+  } else if (!map->trajectory.empty()) {
+    request.start = TPose2D(map->trajectory.front().map_from_base.asTPose());
+  } else {
+    throw maps::InputError("trajectory \"" + name + "\": " + shape.map +
+                           " has no recorded trajectory to start from; take shape mission");
+  }
+  request.start_heading_given = true;
+  request.goal = {shape.goal_x_m, shape.goal_y_m, 0.0};
+  const planning::PlanResult plan = planner_on(*map, config).plan(request);
+  if (plan.status != planning::PlanStatus::kOk) {
+    throw maps::InputError("trajectory \"" + name + "\" cannot be driven: " + plan.message);
+  }
+  return track_of(plan, std::move(map));
+}
+
+PlannedTrack draw_mission(const std::string& name, const TrackShape& shape,
+                          std::shared_ptr<const maps::SavedMap> map, const RovigoConfig& config,
+                          std::uint64_t seed) {
+  if (!map) {
+    map =
+        std::make_shared<const maps::SavedMap>(true_map("random:" + std::to_string(seed), config));
+  }
+  const planning::DrivePlanner planner = planner_on(*map, config);
+  std::vector<TPoint2D> places = places_on(map->grid, config);
+  if (!places.empty()) {
+    MissionDraw draw(std::move(places), seed);
+    for (int i = 0; i < kDraws; ++i) {
+      const planning::PlanResult plan = planner.plan(draw.next());
+      if (plan.status != planning::PlanStatus::kOk || plan.path_length_m < kShortestM) continue;
+      return track_of(plan, std::move(map));
+    }
+  }
+  throw maps::InputError("trajectory \"" + name + "\", seed " + std::to_string(seed) +
+                         ": no two places a metre apart with a way between them in " +
+                         (shape.map.empty() ? "world " + shape.world : shape.map));
+}
+
+}  // namespace rovigo::app
