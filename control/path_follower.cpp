@@ -19,6 +19,7 @@ constexpr double kCatchUpShare = 0.2;     ///< a late rover may drive this much 
 constexpr double kCatchUpSpeedMS = 0.04;  ///< ... plus this
 constexpr double kIntegralShare = 0.3;    ///< the speed integral's authority; none at a stop
 constexpr double kLostTurnRad = 0.4;      ///< heading error at which a turn's reference waits
+constexpr double kNudgeRad = 0.2;         ///< up to here a standing rover is nudged, not steered
 constexpr SearchWindow kResumeWindow{.back_m = 0.5, .ahead_m = 1.0};
 
 /// 1 up to `from`, falling to 0 at `to`.
@@ -95,6 +96,7 @@ void PathFollower::next_leg() {
   pace_ = 1.0;  // a leg starts at rest, so full pace is no jump
   rest_time_s_ = 0.0;
   turning_first_ = false;
+  nudge_.reset();
   heading_pi_.reset();
   speed_pi_.reset();
 }
@@ -159,7 +161,7 @@ FollowOutput PathFollower::drive(const Leg& leg, const FollowInput& in) {
   const double path_turn = out.wanted.vx * curvature * std::cos(out.heading_error_rad) / stretch;
   const double feed_forward = path_turn + to_path.heading_rate;
   out.wanted.vx *= steering_room(feed_forward + config_.heading_kp_1_s * error, in);
-  out.wanted.omega = steer(error, feed_forward, 0.05 + 0.5 * in.twist.vx, in);
+  out.wanted.omega = steer(stoppable_error(error), feed_forward, 0.05 + 0.5 * in.twist.vx, in);
   return out;
 }
 
@@ -207,6 +209,16 @@ double PathFollower::wanted_speed(const Leg& leg, const PathPlace& place, double
                                   .min = 0.0,
                                   .max = std::min({cap, feed_forward + catch_up, braking}),
                                   .integral_limit = kIntegralShare * feed_forward});
+}
+
+/// A proportional loop asks for more turning than it can stop again when the error is large; what
+/// it swings back over grows from swing to swing. Beyond what the acceleration allows the response
+/// grows with the root only; half of it is left for what comes late.
+double PathFollower::stoppable_error(double error) const {
+  const double kp = config_.heading_kp_1_s, a = 0.5 * limits_.max_yaw_acceleration_rad_s2;
+  const double linear = a / (kp * kp);
+  if (std::abs(error) <= linear) return error;
+  return std::copysign(braking_speed(std::abs(error) - linear / 2, a) / kp, error);
 }
 
 /// 1 while the turn asked for can be had; below that, the share of speed at which the path's
@@ -258,8 +270,8 @@ FollowOutput PathFollower::turn(const Leg& leg, const FollowInput& in) {
   out.heading_error_rad = error;
   const bool close = std::abs(error) <= config_.fine_heading_tolerance_rad &&
                      std::abs(in.twist.omega) < kStandingTurnRateRadS;
-  const bool long_enough =
-      rest_time_s_ > config_.settle_time_s && std::abs(error) <= config_.goal_heading_tolerance_rad;
+  const bool long_enough = !nudge_.is_pushing() && rest_time_s_ > config_.settle_time_s &&
+                           std::abs(error) <= config_.goal_heading_tolerance_rad;
   if (reference_time_s_ >= end && (close || long_enough)) {
     next_leg();
     return out;
@@ -271,7 +283,11 @@ FollowOutput PathFollower::turn(const Leg& leg, const FollowInput& in) {
       leg, pace,
       limits_.max_yaw_acceleration_rad_s2 / std::max(std::abs(planned), kStandingTurnRateRadS),
       in.dt_s);
-  out.wanted.omega = turn_in_place(error, pace_ * planned, in);
+  const bool stands = std::abs(in.twist.omega) < kStandingTurnRateRadS;
+  const bool nearly = reference_time_s_ >= end && std::abs(error) < kNudgeRad;
+  out.wanted.omega = nudge_.is_pushing() || (nearly && stands)
+                         ? nudge_.step(error, in.dt_s, in.dead_zone_m_s, in.turn_gain, limits_)
+                         : turn_in_place(error, pace_ * planned, in);
   return out;
 }
 

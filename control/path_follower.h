@@ -10,6 +10,7 @@
 #include "control/control_config.h"
 #include "control/pi_controller.h"
 #include "control/trajectory_legs.h"
+#include "control/turn_nudge.h"
 
 namespace rovigo::control {
 
@@ -18,7 +19,8 @@ struct FollowInput {
   TTwist2D twist;     ///< modelled, now
   double dt_s = 0.0;  ///< since the last step
   double speed_cap_m_s = 0.0;
-  double turn_gain = 1.0;  ///< real turn per commanded turn, > 0
+  double turn_gain = 1.0;      ///< real turn per commanded turn, > 0
+  double dead_zone_m_s = 0.0;  ///< rim speed that a standing wheel needs to start
 };
 
 struct FollowOutput {
@@ -61,6 +63,7 @@ class PathFollower {
                     double speed) const;
   double wanted_speed(const Leg& leg, const PathPlace& place, double heading_error,
                       const FollowInput& in);
+  double stoppable_error(double error) const;
   double steering_room(double turn_rate, const FollowInput& in) const;
   double steer(double error, double feed_forward, double integral_limit, const FollowInput& in);
   double turn_in_place(double error, double feed_forward, const FollowInput& in);
@@ -70,6 +73,7 @@ class PathFollower {
   TrajectoryLegs legs_;
   PiController heading_pi_;
   PiController speed_pi_;
+  TurnNudge nudge_;
   std::size_t leg_index_ = 0;
   double reference_time_s_ = 0.0;
   double pace_ = 1.0;  ///< seconds of trajectory per second

@@ -39,6 +39,7 @@ class PosePredictor {
   double asked_turn(double from_s, double to_s) const;
 
   void set_turn_gain(double gain) { turn_gain_ = gain; }
+  void set_dead_zone(double rim_m_s) { drive_.dead_zone_m_s = rim_m_s; }
   double anchor_time_s() const { return anchor_time_s_; }
 
  private:

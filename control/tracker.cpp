@@ -8,6 +8,7 @@
 #include "control/path_follower.h"
 #include "control/pose_predictor.h"
 #include "control/progress_monitor.h"
+#include "control/stiction.h"
 #include "control/turn_gain.h"
 #include "control/watchdog.h"
 
@@ -18,7 +19,7 @@ using maps::wrap_angle;
 
 constexpr double kStandstillS = 0.3;  ///< at rest this long before "reached" is said
 constexpr double kStandingRimSpeedMS = 0.01;
-constexpr int kMostApproaches = 3;          ///< second tries at a missed goal
+constexpr int kMostApproaches = 6;          ///< second tries at a missed goal
 constexpr double kLongestApproachM = 0.30;  ///< a goal missed by more needs a new plan
 
 enum class PoseUse {
@@ -48,6 +49,7 @@ struct TrajectoryTracker::Impl {
         follower(config_in, limits, std::move(trajectory)),
         goal(follower.goal()),
         predictor(drive_model(config_in, robot)),
+        stiction(config_in.dead_zone_speed_m_s, robot.track_width_m),
         watchdog(config_in.watchdog_s),
         monitor(config_in.stagnation_time_s) {}
 
@@ -55,6 +57,7 @@ struct TrajectoryTracker::Impl {
 
   PoseUse judge(double now_s, const PoseInput& pose) const;
   void take_pose(double now_s, const PoseInput& pose);
+  bool jumps(const PoseInput& pose) const;
   void correct_estimate(const PoseInput& pose);
   TTwist2D follow(double now_s, double dt_s);
   TTwist2D settle(double now_s, const TPose2D& estimate);
@@ -68,6 +71,7 @@ struct TrajectoryTracker::Impl {
   TPose2D goal;
   PosePredictor predictor;
   TurnGainEstimator turn_gain;
+  StictionEstimator stiction;
   Watchdog watchdog;
   ProgressMonitor monitor;
 
@@ -78,7 +82,9 @@ struct TrajectoryTracker::Impl {
   double last_usable_s = 0.0;  ///< arrival of the last usable pose, or the start
   double newest_pose_s = 0.0;
   bool have_pose = false;
-  bool halted = true;  ///< standing or slowing down until a usable pose comes
+  bool placed = false;           ///< the predictor was put somewhere by a usable pose
+  bool jumped_in_doubt = false;  ///< a doubtful pose was elsewhere; only a good one is believed now
+  bool halted = true;            ///< standing or slowing down until a usable pose comes
   double speed_cap_m_s = 0.0;
   TTwist2D last_command;
   double standing_since_s = -1.0;  ///< at the end of the trajectory; negative: not there
@@ -97,6 +103,7 @@ TrackerOutput TrajectoryTracker::Impl::step(double now_s, const PoseInput& pose)
   const double dt = now_s - now_last_s;
   now_last_s = std::max(now_s, now_last_s);
   predictor.advance(now_s);
+  stiction.expect(last_command, predictor.twist(), dt);
   take_pose(now_s, pose);
   watch_time(now_s);
 
@@ -129,10 +136,16 @@ void TrajectoryTracker::Impl::take_pose(double now_s, const PoseInput& pose) {
   if (use == PoseUse::kIgnore) return;
   have_pose = true;
   newest_pose_s = pose.time_s;
-  if (use == PoseUse::kStop) {
+  if (pose.quality == PoseQuality::kGood) {
+    jumped_in_doubt = false;
+  } else if (use == PoseUse::kDrive && placed && jumps(pose)) {
+    jumped_in_doubt = true;
+  }
+  if (use == PoseUse::kStop || jumped_in_doubt) {
     halted = true;
     monitor.restart();
     turn_gain.interrupt();
+    stiction.interrupt();
     return;
   }
   watchdog.feed(now_s);
@@ -140,9 +153,11 @@ void TrajectoryTracker::Impl::take_pose(double now_s, const PoseInput& pose) {
   speed_cap_m_s = pose.quality == PoseQuality::kGood
                       ? limits.max_speed_m_s
                       : std::min(limits.max_speed_m_s, config.doubtful_speed_m_s);
+  placed = true;
   if (halted) {
     halted = false;
     turn_gain.interrupt();
+    stiction.interrupt();
     predictor.reset(pose.time_s, pose.map_from_base);
     follower.resume(predictor.at(now_s + config.command_delay_s), last_command.vx);
   } else {
@@ -150,21 +165,33 @@ void TrajectoryTracker::Impl::take_pose(double now_s, const PoseInput& pose) {
   }
 }
 
-void TrajectoryTracker::Impl::correct_estimate(const PoseInput& pose) {
-  constexpr double kJumpM = 0.3, kJumpRad = 0.5;  // relocalised: take it as it is
-  constexpr double kLeastShare = 0.3;
+/// Farther than dead reckoning errs: the estimator has found itself elsewhere.
+bool TrajectoryTracker::Impl::jumps(const PoseInput& pose) const {
+  constexpr double kJumpM = 0.3, kJumpRad = 0.5;
   const TPose2D expected = predictor.at(pose.time_s);
-  const bool jumped =
-      maps::distance(maps::position_of(expected), maps::position_of(pose.map_from_base)) > kJumpM ||
-      std::abs(wrap_angle(pose.map_from_base.phi - expected.phi)) > kJumpRad;
+  return maps::distance(maps::position_of(expected), maps::position_of(pose.map_from_base)) >
+             kJumpM ||
+         std::abs(wrap_angle(pose.map_from_base.phi - expected.phi)) > kJumpRad;
+}
+
+void TrajectoryTracker::Impl::correct_estimate(const PoseInput& pose) {
+  constexpr double kLeastShare = 0.3;
+  const bool jumped = jumps(pose);  // relocalised: taken as it is
   const double sigma = pose.sigma_position_m > 0.0 ? pose.sigma_position_m : 0.0;
   const double share =
       std::max(kLeastShare, config.pose_noise_scale_m / (config.pose_noise_scale_m + sigma));
-  if (jumped) turn_gain.interrupt();
+  if (jumped) {
+    turn_gain.interrupt();
+    stiction.interrupt();
+  }
   predictor.correct(pose.time_s, pose.map_from_base, jumped ? 1.0 : share);
   if (config.adapt_turn_gain && pose.quality == PoseQuality::kGood) {
     turn_gain.add(pose.time_s, pose.map_from_base.phi, predictor);
     predictor.set_turn_gain(turn_gain.gain());
+  }
+  if (pose.quality == PoseQuality::kGood) {
+    if (stiction.pose(pose.map_from_base, sigma)) monitor.restart();  // a new try is due
+    predictor.set_dead_zone(stiction.dead_zone_m_s());
   }
 }
 
@@ -175,6 +202,7 @@ TTwist2D TrajectoryTracker::Impl::follow(double now_s, double dt_s) {
   input.dt_s = dt_s;
   input.speed_cap_m_s = speed_cap_m_s;
   input.turn_gain = turn_gain.gain();
+  input.dead_zone_m_s = stiction.dead_zone_m_s();
   const bool stands = faster_wheel(input.twist, limits.track_width_m) < kStandingRimSpeedMS;
   standing_s = stands ? standing_s + std::max(dt_s, 0.0) : 0.0;
   const FollowOutput out = follower.step(input);
@@ -186,7 +214,7 @@ TTwist2D TrajectoryTracker::Impl::follow(double now_s, double dt_s) {
                                 std::abs(out.heading_error_rad)})) {
     status = TrackStatus::kNoProgress;
   }
-  return with_dead_zone_compensation(out.wanted, standing_s, config.dead_zone_speed_m_s,
+  return with_dead_zone_compensation(out.wanted, standing_s, stiction.dead_zone_m_s(),
                                      limits.track_width_m);
 }
 

@@ -12,7 +12,8 @@ constexpr double kLostAfterS = 0.3;       // of contradiction, after the view ha
 constexpr int kLostAfterMisses = 3;       // and so many frames
 constexpr double kReconfirmAfterS = 0.5;  // blind for longer, the rover may be anywhere
 constexpr double kHeldScanShare = 0.75;   // of one view, to hold a pose by it alone
-constexpr std::size_t kEnoughScan = 40;   // points of it
+constexpr std::size_t kEnoughScan = 40;   // points of it,
+constexpr int kEnoughOnMap = 20;          // and of them on ground the map knows
 constexpr double kKeptInliers = 0.98;     // a frame, rounded down; half is left after a second
 
 }  // namespace
@@ -41,6 +42,7 @@ bool Localizer::Impl::hold_by_scan(const SeenView& view, const std::vector<int>&
   if (view.shows_plenty() && checker.map_knows_view(pose)) return false;
   const GridMatch match = match_scan(finder.field(), view.scan, to_planar(pose),
                                      motion.dead_reckoning().pose_covariance());
+  if (match.points < kEnoughOnMap) return false;  // nothing to hold on to
   const Se3 held = from_planar(match.look.map_from_base);
   const ViewCheck seen = checker.check(view, local_landmarks, held, SeenView::kPlenty);
   if (seen.contradicts || seen.scan_share < kHeldScanShare) return false;

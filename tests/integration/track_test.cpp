@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -96,6 +97,41 @@ TEST_F(Track, TheReportOfMergedShardsIsTheWholesByteForByte) {
                    folder_ / "again"},
                   2),
               HasSubstr("drives.json"));
+}
+
+TEST_F(Track, MissionsInWorldsOfTheirOwnTouchNothingAndArrive) {
+  test::write_text(suite_, R"(
+trajectories:
+  office: {shape: mission, world: random}
+  lab: {shape: mission, world: lab}
+groups:
+  - {name: missions, scenario: late_poses, trajectories: [office, lab], seeds: {from: 3, to: 6},
+     limits: {goal_m: 0.05, goal_heading_rad: 0.1, goal_reversals: 6}}
+)");
+  const std::string whole = run({suite_, "--threads", "1"});
+  EXPECT_EQ(run({suite_, "--threads", "3"}), whole);
+  const json object = json::parse(whole);
+  EXPECT_EQ(object["passed"], 8);
+  EXPECT_NE(object["runs"][0]["path_length_m"], object["runs"][1]["path_length_m"]);
+  for (const json& drive : object["runs"]) EXPECT_EQ(drive["collisions"], 0) << drive["name"];
+}
+
+TEST_F(Track, ADriveRecordedEarlierIsDrivenAgain) {
+  std::string poses = "# t x y z qx qy qz qw\n";  // a quarter circle of 1 m, begun elsewhere
+  for (int i = 0; i <= 90; ++i) {
+    const double a = i * M_PI / 180.0;
+    poses += std::to_string(0.1 * i) + " " + std::to_string(5.0 + std::sin(a)) + " " +
+             std::to_string(3.0 - std::cos(a)) + " 0 0 0 " + std::to_string(std::sin(a / 2)) + " " +
+             std::to_string(std::cos(a / 2)) + "\n";
+  }
+  test::write_text(folder_ / "earlier.txt", poses);
+  test::write_text(suite_,
+                   "trajectories: {again: {shape: recorded, file: earlier.txt}}\n"
+                   "groups: [{name: g, scenario: ideal, pose: truth, limits: {cross_track_rms_m: "
+                   "0.005, goal_m: 0.01}}]\n");
+  const json object = json::parse(run({suite_}));
+  EXPECT_EQ(object["passed"], 1);
+  EXPECT_NEAR(object["runs"][0]["path_length_m"].get<double>(), M_PI / 2, 0.12);
 }
 
 TEST_F(Track, ARunBeyondItsLimitsFailsTheSuiteAndSaysByHowMuch) {

@@ -39,6 +39,25 @@ TEST(TrackSuite, AGroupIsEveryTrajectoryWithEveryControllerSpeedAndSeed) {
   }
 }
 
+TEST(TrackSuite, SeedsMayBeARange) {
+  const auto seeds_of = [](const std::string& seeds) {
+    return parse_suite(std::string(kTwoShapes) + "groups: [{name: g, seeds: " + seeds + "}]",
+                       "s.yaml")
+        .groups[0]
+        .seeds;
+  };
+  EXPECT_EQ(seeds_of("{from: 3, to: 5}"), (std::vector<std::uint64_t>{3, 4, 5}));
+  EXPECT_EQ(seeds_of("{from: 7, to: 7}"), (std::vector<std::uint64_t>{7}));
+  const std::string shapes = kTwoShapes;
+  EXPECT_THAT(refusal_of(shapes + "groups: [{name: a, seeds: {from: 5, to: 3}}]"),
+              HasSubstr("1 to 100000 seeds"));
+  EXPECT_THAT(refusal_of(shapes + "groups: [{name: a, seeds: {from: 5}}]"),
+              HasSubstr("needs from and to"));
+  EXPECT_THAT(
+      refusal_of(shapes + "groups: [{name: a, seeds: {from: 0, to: 18446744073709551615}}]"),
+      HasSubstr("1 to 100000 seeds"));
+}
+
 TEST(TrackSuite, WhatIsLeftOutKeepsItsDefault) {
   const TrackSuite suite = parse_suite(std::string(kTwoShapes) + "groups: [{name: g}]", "a/b.yaml");
   EXPECT_EQ(suite.name, "b");

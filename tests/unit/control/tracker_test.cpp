@@ -212,6 +212,34 @@ TEST(Tracker, GoesOnWhenAWrongPoseIsTakenBack) {
   EXPECT_LT(run.metrics.cross_track_max_m, 0.1);
 }
 
+TEST(Tracker, BelievesAJumpOnlyOfAGoodPose) {
+  DriveSetup elsewhere;
+  elsewhere.tamper = [](double t, PoseInput& pose) {
+    if (t < 4.0 || t > 7.0) return;
+    pose.quality = PoseQuality::kDoubtful;  // found again, it thinks, in the next room
+    pose.sigma_position_m = 0.05;
+    pose.map_from_base.x -= 3.5;
+  };
+  const Outcome run = drive(long_straight(), elsewhere);
+  for (const DriveStep& s : run.log.steps) {
+    if (s.time_s > 5.0 && s.time_s < 7.0) {
+      ASSERT_EQ(s.command.vx, 0.0) << s.time_s;
+    }
+  }
+  EXPECT_EQ(run.log.status, TrackStatus::kReached);
+  EXPECT_LT(run.metrics.cross_track_max_m, 0.02);
+}
+
+TEST(Tracker, ADeadZoneLargerThanItKnowsOfDoesNotStallIt) {
+  for (const double dead_zone_m_s : {0.06, 0.08}) {
+    const auto plan = TrajectoryBuilder({}, {}).line(1.0).turn(0.08).line(0.3).turn(-1.2).get();
+    const Outcome run = drive(plan, {.position_noise_m = 0.01, .yaw_noise_rad = 0.01},
+                              {.dead_zone_m_s = dead_zone_m_s});
+    EXPECT_EQ(run.log.status, TrackStatus::kReached) << dead_zone_m_s;
+    EXPECT_LT(run.metrics.final_heading_error_rad, 0.06) << dead_zone_m_s;
+  }
+}
+
 TEST(Tracker, TimesOutWhenFarBehindThePlan) {
   ControlConfig hasty;
   hasty.timeout_factor = 1.0;
