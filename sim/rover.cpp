@@ -7,6 +7,8 @@
 #include <map>
 #include <vector>
 
+#include "sim/tires.h"
+
 namespace rovigo::sim {
 namespace {
 
@@ -15,18 +17,8 @@ constexpr int kObstacle = 2;
 constexpr int kWheel = 4;
 constexpr int kBody = 8;
 
-constexpr double kGravity = 9.81;
-constexpr double kMassKg = 6.5;
-constexpr double kWheelMassKg = 0.3;
-constexpr double kCenterOfMassM = 0.09;   // above the floor
-constexpr double kBodyClearanceM = 0.03;  // lower things are rolled over
-constexpr double kFlushM = 0.01;          // lower still: a carpet, no step at all
-constexpr double kTireFriction = 0.9;
-// Along its axle a tyre scrubs: the side force grows with the speed of scrubbing up to a limit.
-// Plain Coulomb friction would let the rover slide sideways freely as soon as all four wheels
-// scrub, which they do in every turn.
-constexpr double kScrubStiffnessNsPerM = 80.0;
-constexpr double kScrubFriction = 0.75;
+constexpr double kFlushM = 0.01;        // lower than this: a carpet, no step at all
+constexpr double kStandingRadS = 0.05;  // a wheel slower than this stands
 constexpr int kSolverIterations = 30;
 constexpr int kRestStepsBetweenContacts = 24;  // 0.1 s: a bounce is one contact, not ten
 
@@ -83,11 +75,15 @@ double top_of(const Solid& solid) {
 }  // namespace
 
 struct RoverBody::Impl {
-  Impl(const WorldModel& model, const maps::RobotModel& robot, const TPose2D& pose)
+  Impl(const WorldModel& model, const maps::RobotModel& robot, const TPose2D& pose,
+       const Footing& footing)
       : robot_(robot),
+        footing_(footing),
+        mass_(loaded_body(robot, footing.payload)),
+        wheel_loads_n_(wheel_loads(robot, footing.payload)),
         dispatcher_(&configuration_),
         world_(&dispatcher_, &broadphase_, &solver_, &configuration_) {
-    world_.setGravity(btVector3(0, 0, static_cast<btScalar>(-kGravity)));
+    world_.setGravity(to_bullet(gravity_on(footing.slope)));
     world_.getSolverInfo().m_numIterations = kSolverIterations;
     world_.getSolverInfo().m_solverMode =
         SOLVER_SIMD | SOLVER_USE_WARMSTARTING | SOLVER_ENABLE_FRICTION_DIRECTION_CACHING;
@@ -117,7 +113,7 @@ struct RoverBody::Impl {
     } else {
       shape = std::make_unique<btCylinderShapeZ>(to_bullet(Eigen::Vector3d(solid.size / 2)));
     }
-    const bool is_floor = is_plane || top <= kBodyClearanceM;
+    const bool is_floor = is_plane || top <= robot_.ground_clearance_m;
     add_body(0.0, std::move(shape), to_bullet(frame), btVector3(0, 0, 0),
              is_floor ? kFloor : kObstacle, is_floor ? kWheel : kBody);
     names_[bodies_.back().get()] = solid.name;
@@ -128,7 +124,7 @@ struct RoverBody::Impl {
     btRigidBody::btRigidBodyConstructionInfo info(static_cast<btScalar>(mass), nullptr, shape.get(),
                                                   inertia);
     info.m_startWorldTransform = frame;
-    info.m_friction = group == kWheel ? static_cast<btScalar>(kTireFriction) : btScalar(1);
+    info.m_friction = group == kWheel ? static_cast<btScalar>(robot_.tire_friction) : btScalar(1);
     bodies_.push_back(std::make_unique<btRigidBody>(info));
     shapes_.push_back(std::move(shape));
     world_.addRigidBody(bodies_.back().get(), group, mask);
@@ -136,23 +132,30 @@ struct RoverBody::Impl {
   }
 
   void build_rover(const TPose2D& pose) {
-    const double height = robot_.body_height_m - kBodyClearanceM;
+    const double clearance = robot_.ground_clearance_m;
+    const double height = robot_.body_height_m - clearance;
     auto box = std::make_unique<btBoxShape>(to_bullet(
         Eigen::Vector3d(robot_.footprint_length_m / 2, robot_.footprint_width_m / 2, height / 2)));
+    // Bullet's bodies turn about their origin: the frame lies in the centre of mass.
     auto hull = std::make_unique<btCompoundShape>();
-    hull->addChildShape(to_bullet(upright({}, kBodyClearanceM + height / 2 - kCenterOfMassM)),
-                        box.get());
-    const double mass = kMassKg - 4.0 * kWheelMassKg;
-    btVector3 inertia;
-    box->calculateLocalInertia(static_cast<btScalar>(mass), inertia);
+    Eigen::Isometry3d body_from_box = Eigen::Isometry3d::Identity();
+    body_from_box.translation() =
+        Eigen::Vector3d(0.0, 0.0, clearance + height / 2) - mass_.center_of_mass;
+    hull->addChildShape(to_bullet(body_from_box), box.get());
     shapes_.push_back(std::move(box));
-    chassis_ = add_body(mass, std::move(hull), to_bullet(upright(pose, kCenterOfMassM)), inertia,
-                        kBody, kObstacle);
+    chassis_ = add_body(mass_.mass_kg, std::move(hull), to_bullet(body_at(pose)),
+                        to_bullet(mass_.inertia), kBody, kObstacle);
     chassis_->setActivationState(DISABLE_DEACTIVATION);
     world_.chassis = chassis_;
     for (const int x : {1, -1}) {
       for (const int y : {1, -1}) add_wheel(pose, x, y);
     }
+  }
+
+  Eigen::Isometry3d body_at(const TPose2D& world_from_base) const {
+    Eigen::Isometry3d frame = upright(world_from_base, 0.0);
+    frame.translation() = frame * mass_.center_of_mass;
+    return frame;
   }
 
   /// Order: front left, front right, rear left, rear right.
@@ -161,21 +164,21 @@ struct RoverBody::Impl {
     const Eigen::Vector3d center(x * robot_.wheel_base_m / 2, y * robot_.track_width_m / 2, r);
     auto sphere = std::make_unique<btSphereShape>(static_cast<btScalar>(r));
     btVector3 inertia;
-    sphere->calculateLocalInertia(static_cast<btScalar>(kWheelMassKg), inertia);
+    sphere->calculateLocalInertia(static_cast<btScalar>(robot_.wheel_mass_kg), inertia);
     Eigen::Isometry3d frame = upright(pose, 0.0);
     frame.translation() = frame * center;
-    btRigidBody* wheel =
-        add_body(kWheelMassKg, std::move(sphere), to_bullet(frame), inertia, kWheel, kFloor);
+    btRigidBody* wheel = add_body(robot_.wheel_mass_kg, std::move(sphere), to_bullet(frame),
+                                  inertia, kWheel, kFloor);
     wheel->setActivationState(DISABLE_DEACTIVATION);
     const btVector3 axle(0, 1, 0);
-    btVector3 on_chassis = to_bullet(center);
-    on_chassis.setZ(on_chassis.z() - static_cast<btScalar>(kCenterOfMassM));
+    const btVector3 on_chassis = to_bullet(Eigen::Vector3d(center - mass_.center_of_mass));
     // The wheel is body A: with the chassis there, Bullet's motor turns the other way.
     auto hinge = std::make_unique<btHingeConstraint>(*wheel, *chassis_, btVector3(0, 0, 0),
                                                      on_chassis, axle, axle);
     world_.addConstraint(hinge.get(), true);
     hinges_.push_back(std::move(hinge));
     wheels_.push_back(wheel);
+    tires_.emplace_back(robot_);
   }
 
   double wheel_speed(std::size_t i) const {
@@ -184,18 +187,21 @@ struct RoverBody::Impl {
         (wheels_[i]->getAngularVelocity() - chassis_->getAngularVelocity()).dot(axle));
   }
 
-  /// Side forces of the four tyres, on the chassis at the wheels' contacts with the floor.
-  void apply_scrub() {
+  /// What the floor does to the tyres: its grip where they roll, and their side forces, on the
+  /// chassis at the wheels' contacts.
+  void apply_tires(double dt_s) {
     const btTransform& frame = chassis_->getWorldTransform();
     const btVector3 axle = frame.getBasis().getColumn(1);
-    const auto limit = static_cast<btScalar>(kScrubFriction * kMassKg * kGravity / 4.0);
-    for (const btRigidBody* wheel : wheels_) {
-      btVector3 foot = wheel->getWorldTransform().getOrigin();
+    for (std::size_t i = 0; i < wheels_.size(); ++i) {
+      btVector3 foot = wheels_[i]->getWorldTransform().getOrigin();
+      const double grip = grip_at(footing_.grip, footing_.seed, {foot.x(), foot.y()});
+      wheels_[i]->setFriction(static_cast<btScalar>(robot_.tire_friction * grip));
       foot.setZ(foot.z() - static_cast<btScalar>(robot_.wheel_radius_m));
       const btVector3 arm = foot - frame.getOrigin();
-      const btScalar scrub = chassis_->getVelocityInLocalPoint(arm).dot(axle);
-      const btScalar force = -static_cast<btScalar>(kScrubStiffnessNsPerM) * scrub;
-      chassis_->applyForce(axle * btMax(-limit, btMin(limit, force)), arm);
+      const double scrub = chassis_->getVelocityInLocalPoint(arm).dot(axle);
+      const bool rolls = std::abs(wheel_speed(i)) > kStandingRadS;
+      const double force = tires_[i].force(scrub, rolls, wheel_loads_n_[i], grip, dt_s);
+      chassis_->applyForce(axle * static_cast<btScalar>(force), arm);
     }
   }
 
@@ -230,6 +236,9 @@ struct RoverBody::Impl {
   }
 
   maps::RobotModel robot_;
+  Footing footing_;
+  MassProperties mass_;
+  std::array<double, 4> wheel_loads_n_;
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_;
   btDbvtBroadphase broadphase_;
@@ -240,6 +249,7 @@ struct RoverBody::Impl {
   std::vector<std::unique_ptr<btHingeConstraint>> hinges_;
   btRigidBody* chassis_ = nullptr;
   std::vector<btRigidBody*> wheels_;
+  std::vector<TireSide> tires_;
   long step_ = 0;
   int contact_events_ = 0;
   std::map<const btCollisionObject*, long> last_touch_;
@@ -247,8 +257,8 @@ struct RoverBody::Impl {
 };
 
 RoverBody::RoverBody(const WorldModel& world, const maps::RobotModel& robot,
-                     const TPose2D& world_from_base)
-    : impl_(std::make_unique<Impl>(world, robot, world_from_base)) {}
+                     const TPose2D& world_from_base, const Footing& footing)
+    : impl_(std::make_unique<Impl>(world, robot, world_from_base, footing)) {}
 RoverBody::~RoverBody() = default;
 
 void RoverBody::step(double dt_s, const SideDrive& left, const SideDrive& right) {
@@ -257,7 +267,7 @@ void RoverBody::step(double dt_s, const SideDrive& left, const SideDrive& right)
     impl_->hinges_[i]->enableAngularMotor(true, static_cast<btScalar>(drive.speed_rad_s),
                                           static_cast<btScalar>(drive.torque_limit_nm * dt_s));
   }
-  impl_->apply_scrub();
+  impl_->apply_tires(dt_s);
   impl_->world_.stepSimulation(static_cast<btScalar>(dt_s), 0);  // exactly one step
   impl_->count_contacts();
 }
@@ -268,8 +278,7 @@ BodyState RoverBody::state() const {
   const btQuaternion q = frame.getRotation();
   s.world_from_base.linear() =
       Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized().toRotationMatrix();
-  const Eigen::Vector3d base_in_body(0.0, 0.0, -kCenterOfMassM);
-  const Eigen::Vector3d arm = s.world_from_base.linear() * base_in_body;
+  const Eigen::Vector3d arm = s.world_from_base.linear() * -impl_->mass_.center_of_mass;
   s.world_from_base.translation() = to_eigen(frame.getOrigin()) + arm;
   s.angular_velocity = to_eigen(impl_->chassis_->getAngularVelocity());
   s.velocity = to_eigen(impl_->chassis_->getLinearVelocity()) + s.angular_velocity.cross(arm);
@@ -299,7 +308,7 @@ void RoverBody::place(const TPose2D& world_from_base) {
     body->clearForces();
   };
   const btTransform old_inverse = impl_->chassis_->getWorldTransform().inverse();
-  const btTransform target = to_bullet(upright(world_from_base, kCenterOfMassM));
+  const btTransform target = to_bullet(impl_->body_at(world_from_base));
   for (auto* wheel : impl_->wheels_)
     put(wheel, target * (old_inverse * wheel->getWorldTransform()));
   put(impl_->chassis_, target);

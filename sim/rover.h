@@ -9,6 +9,7 @@
 
 #include "maps/geometry.h"
 #include "maps/robot_model.h"
+#include "sim/footing.h"
 #include "sim/world_model.h"
 
 namespace rovigo::sim {
@@ -28,7 +29,8 @@ struct BodyState {
 
 class RoverBody {
  public:
-  RoverBody(const WorldModel& world, const maps::RobotModel& robot, const TPose2D& world_from_base);
+  RoverBody(const WorldModel& world, const maps::RobotModel& robot, const TPose2D& world_from_base,
+            const Footing& footing = {});
   ~RoverBody();
 
   void step(double dt_s, const SideDrive& left, const SideDrive& right);
