@@ -47,19 +47,16 @@ SideDrive DriveTrain::drive_side(const Input& in, double target_m_s, double meas
       (target - loop.wanted_m_s) * std::min(1.0, in.dt_s / std::max(motor_.lag_s, in.dt_s));
   const double measured_m_s = measured_rad_s * robot_.wheel_radius_m;
   const double error = grip * loop.wanted_m_s - measured_m_s;
-  loop.trim_m_s = target == 0.0 ? 0.0
-                                : std::clamp(loop.trim_m_s + kTrimRate_1_s * error * in.dt_s,
-                                             -kMaxTrim_m_s, kMaxTrim_m_s);
+  // At rest the integral holds the place; on the way to rest it has nothing to take out.
+  const bool stopping = target == 0.0 && moving;
+  loop.trim_m_s = stopping ? 0.0
+                           : std::clamp(loop.trim_m_s + kTrimRate_1_s * error * in.dt_s,
+                                        -kMaxTrim_m_s, kMaxTrim_m_s);
   SideDrive drive;
   drive.speed_rad_s = (grip * loop.wanted_m_s + loop.trim_m_s) / robot_.wheel_radius_m;
   const bool driving = std::abs(drive.speed_rad_s) > std::abs(measured_rad_s);
-  const double motor = motor_torque_nm(std::abs(measured_m_s), driving, in.voltage_share);
-  // Friction takes from a motor that drives and helps one that brakes.
-  drive.torque_limit_nm = driving ? motor - motor_.friction_nm : motor + motor_.friction_nm;
-  if (drive.torque_limit_nm < 0.0) {  // it is stronger than the motor: the wheel is slowed down
-    drive.speed_rad_s = 0.0;
-    drive.torque_limit_nm = -drive.torque_limit_nm;
-  }
+  drive.torque_limit_nm = motor_torque_nm(std::abs(measured_m_s), driving, in.voltage_share);
+  drive.friction_nm = motor_.friction_nm;
   return drive;
 }
 

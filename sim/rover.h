@@ -18,6 +18,7 @@ namespace rovigo::sim {
 struct SideDrive {
   double speed_rad_s = 0.0;
   double torque_limit_nm = 0.0;  ///< of each of the side's two motors
+  double friction_nm = 0.0;      ///< of each of its two wheels' gears and bearings
 };
 
 /// Where base_link is and how it moves; velocities in the world frame.

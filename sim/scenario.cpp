@@ -260,6 +260,31 @@ void Kidnap::describe(maps::SettingsVisitor& v) {
          where);
 }
 
+void Fault::describe(maps::SettingsVisitor& v) {
+  v.text({.name = "kind",
+          .help = "What breaks.",
+          .choices = {"poses_stall", "poses_late", "poses_not_finite", "set_points_stop",
+                      "battery_low", "manual_takeover"}},
+         kind);
+  v.real({.name = "start_s", .help = "When it begins.", .min = 0, .max = kForGood}, start_s);
+  v.real({.name = "within_s",
+          .help = "It begins up to this later, at a moment drawn by the seed.",
+          .min = 0,
+          .max = kForGood},
+         within_s);
+  v.real({.name = "duration_s",
+          .help = "How long it lasts; left out: for good.",
+          .min = 0,
+          .max = kForGood},
+         duration_s);
+  v.real({.name = "delay_s", .help = "poses_late: by how much.", .min = 0, .max = 10}, delay_s);
+  v.real({.name = "voltage_share",
+          .help = "battery_low: voltage as a share of the nominal one.",
+          .min = 0,
+          .max = 1},
+         voltage_share);
+}
+
 namespace {
 
 constexpr std::size_t kMaxEvents = 1000;
@@ -294,9 +319,10 @@ void require_ordered(const std::string& file, const YAML::Node& root, const char
 
 Scenario parse_scenario(const std::string& yaml, const std::string& file) {
   const YAML::Node root = parse_yaml(yaml, file);
-  require_known_keys(file, root,
-                     {"name", "camera", "floor", "people", "imu", "wheels", "motor", "commands",
-                      "payload", "slope", "grip", "pose", "light_steps", "blackouts", "kidnaps"});
+  require_known_keys(
+      file, root,
+      {"name", "camera", "floor", "people", "imu", "wheels", "motor", "commands", "payload",
+       "slope", "grip", "pose", "light_steps", "blackouts", "kidnaps", "faults"});
   Scenario s;
   s.name = std::filesystem::path(file).stem().string();
   if (const YAML::Node name = root["name"]) {
@@ -317,6 +343,7 @@ Scenario parse_scenario(const std::string& yaml, const std::string& file) {
   read_events(file, root, "light_steps", s.light_steps);
   read_events(file, root, "blackouts", s.blackouts);
   read_events(file, root, "kidnaps", s.kidnaps);
+  read_events(file, root, "faults", s.faults);
   require_ordered(file, root, "camera", "min_range_m", s.camera.min_range_m, "max_range_m",
                   s.camera.max_range_m);
   require_ordered(file, root, "people", "min_speed_m_s", s.people.min_speed_m_s, "max_speed_m_s",

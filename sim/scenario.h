@@ -152,6 +152,22 @@ struct Kidnap {
   void describe(maps::SettingsVisitor& v);
 };
 
+/// Something breaks in the closed loop for a while. The simulator applies what concerns the rover,
+/// app what concerns poses and commands.
+struct Fault {
+  /// "poses_stall": none arrives. "poses_late": they arrive `delay_s` later. "poses_not_finite":
+  /// they are no numbers. "set_points_stop": the controller is dead. "battery_low": the voltage
+  /// falls to `voltage_share` of the nominal one. "manual_takeover": an operator takes the rover.
+  std::string kind = "poses_stall";
+  double start_s = 0.0;
+  double within_s = 0.0;  ///< it begins at a moment up to this later, drawn by the seed
+  double duration_s = kForGood;
+  double delay_s = 2.0;
+  double voltage_share = 0.8;
+  static constexpr double kForGood = 1e5;
+  void describe(maps::SettingsVisitor& v);
+};
+
 /// Times are seconds since the recording's first moment.
 struct Scenario {
   std::string name = "default";
@@ -169,6 +185,7 @@ struct Scenario {
   std::vector<LightStep> light_steps;
   std::vector<Blackout> blackouts;
   std::vector<Kidnap> kidnaps;
+  std::vector<Fault> faults;
 };
 
 /// Throws InputError naming file, line, key, value and limit.

@@ -32,7 +32,8 @@ enum Stream : std::uint64_t {
   kCameraStream,
   kPeopleStream,
   kCommandStream,
-  kGripStream
+  kGripStream,
+  kFaultStream
 };
 
 mrpt::poses::CPose3D to_mrpt(const Eigen::Isometry3d& m) {
@@ -122,6 +123,7 @@ struct Simulator::Impl {
         body(w.model(), o.robot, o.world_from_base,
              {o.scenario.payload, o.scenario.slope, o.scenario.grip,
               derive_seed(o.seed, kGripStream)}),
+        faults(o.scenario.faults, derive_seed(o.seed, kFaultStream)),
         link(o.scenario.commands, derive_seed(o.seed, kCommandStream)),
         drive(o.scenario.motor, o.scenario.wheels, o.robot, derive_seed(o.seed, kSlipStream)),
         imu(o.scenario.imu, gravity_on(o.scenario.slope), derive_seed(o.seed, kImuStream)),
@@ -185,12 +187,17 @@ struct Simulator::Impl {
     const auto out = drive.step({.time_s = elapsed_s(),
                                  .dt_s = kStepS,
                                  .command = command,
-                                 .voltage_share = options.scenario.motor.voltage_share,
+                                 .voltage_share = voltage_share(),
                                  .left_speed_rad_s = body.left_speed_rad_s(),
                                  .right_speed_rad_s = body.right_speed_rad_s()});
     body.step(kStepS, out.left, out.right);
     wheels.advance(body.left_speed_rad_s() * kStepS / out.left_grip,
                    body.right_speed_rad_s() * kStepS / out.right_grip);
+  }
+
+  double voltage_share() const {
+    const Fault* low = faults.active(FaultKind::kBatteryLow, elapsed_s());
+    return low ? low->voltage_share : options.scenario.motor.voltage_share;
   }
 
   bool is_switched_off() const { return ride && ride->kind() == "switched_off"; }
@@ -292,6 +299,7 @@ struct Simulator::Impl {
   SimulatorOptions options;
   SensorRig rig;
   RoverBody body;
+  FaultScript faults;
   CommandLink link;
   DriveTrain drive;
   ImuSensor imu;
@@ -317,6 +325,12 @@ Simulator::~Simulator() = default;
 
 void Simulator::step(const TTwist2D& command) { impl_->step(command); }
 double Simulator::time_s() const { return impl_->time_s(); }
+double Simulator::battery_v() const {
+  return impl_->voltage_share() * impl_->options.robot.battery_nominal_v;
+}
+const Fault* Simulator::fault(FaultKind kind) const {
+  return impl_->faults.active(kind, impl_->elapsed_s());
+}
 const Truth& Simulator::truth() const { return impl_->truth; }
 const SensorRig& Simulator::rig() const { return impl_->rig; }
 

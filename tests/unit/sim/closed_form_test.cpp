@@ -87,8 +87,8 @@ TEST(ClosedForm, WithoutPowerItCoastsDownByTheGearsFriction) {
   drive(simulator, {0.6, 0.0, 0.0}, 2.0);
   const double v0 = simulator.truth().twist.vx;
   const double x0 = true_pose(simulator).x;
-  const double deceleration = 4.0 * 0.06 / maps::RobotModel{}.wheel_radius_m /
-                              effective_mass_kg(maps::RobotModel{});
+  const double deceleration =
+      4.0 * 0.06 / maps::RobotModel{}.wheel_radius_m / effective_mass_kg(maps::RobotModel{});
   drive(simulator, {0.6, 0.0, 0.0}, 0.5);  // whatever is commanded
   EXPECT_NEAR(simulator.truth().twist.vx, v0 - 0.5 * deceleration, 0.01 * v0);
   drive(simulator, {0.6, 0.0, 0.0}, 2.0);

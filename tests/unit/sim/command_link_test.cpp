@@ -44,7 +44,7 @@ TEST(CommandLink, JitterSpreadsTheAgeEvenlyAboutTheLatencyAndKeepsTheOrder) {
     ++count;
   }
   EXPECT_GE(least, 0.08 - 1e-9);
-  EXPECT_LE(most, 0.12 + kStepS);  // seen at the next step
+  EXPECT_LE(most, 0.12 + kStepS);                     // seen at the next step
   EXPECT_NEAR(sum / count, 0.1 + kStepS / 2, 0.001);  // sigma of the mean: 0.0003
 }
 
