@@ -140,6 +140,22 @@ void add_track_command(CLI::App& app, Action& chosen, bool& json) {
       ->check(CLI::Range(1, 1024));
 }
 
+void add_tuning_commands(CLI::App& app, Action& chosen, bool& json) {
+  CLI::App* identify =
+      app.add_subcommand("identify", "First-order models from logged set-points and responses");
+  auto i = bind(*identify, run_identify, chosen, json);
+  identify->footer(
+      "The log is a CSV with a header: a drive's drive.csv (forward speed and turn rate are found "
+      "in it), or the columns time_s,setpoint,response. Steps may be uneven; an empty response was "
+      "not measured then.\n"
+      "  rovigo drive lab.rovigo --goal 10,-3.5 --report report\n"
+      "  rovigo identify report/drive.csv --report fit.html");
+  identify->add_option("log", i->log, "The log, CSV")->required();
+  identify->add_option("--setpoint", i->setpoint, "Its column of set-points, by name");
+  identify->add_option("--response", i->response, "Its column of responses, by name");
+  identify->add_option("--report", i->report, "Write a page that shows log and model, HTML");
+}
+
 void add_file_commands(CLI::App& app, Action& chosen, bool& json) {
   CLI::App* info =
       app.add_subcommand("info", "What a recording or a map holds; rescues damaged maps");
@@ -214,6 +230,7 @@ int run_command_line(int argc, const char* const* argv) {
   add_recording_commands(app, chosen, json);
   add_driving_commands(app, chosen, json);
   add_track_command(app, chosen, json);
+  add_tuning_commands(app, chosen, json);
   add_file_commands(app, chosen, json);
   add_checking_commands(app, chosen, json);
 

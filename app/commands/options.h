@@ -89,6 +89,13 @@ struct TrackOptions : CommonOptions {
   std::optional<std::filesystem::path> report;
 };
 
+struct IdentifyOptions : CommonOptions {
+  std::filesystem::path log;
+  std::optional<std::string> setpoint;
+  std::optional<std::string> response;
+  std::optional<std::filesystem::path> report;
+};
+
 struct ExportOptions : CommonOptions {
   std::filesystem::path map;
   std::string format;
@@ -123,6 +130,7 @@ int run_info(const InfoOptions& options);
 int run_plan(const PlanOptions& options);
 int run_drive(const DriveOptions& options);
 int run_track(const TrackOptions& options);
+int run_identify(const IdentifyOptions& options);
 int run_export(const ExportOptions& options);
 int run_import(const ImportOptions& options);
 int run_evaluate_trajectory(const EvaluateTrajectoryOptions& options);
