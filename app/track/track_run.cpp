@@ -78,7 +78,7 @@ control::DriveLog TrackBench::drive(const TrackCase& what) const {
           : perturbed_poses(simulator, world_from_map, scenarios_.at(group.scenario), what.seed);
   const auto controller = make_controller(what, config, track.trajectory);
   return drive_in_simulator(simulator, world_from_map, *poses, *controller,
-                            track.trajectory.duration_s(), {});
+                            track.trajectory.duration_s(), config, {});
 }
 
 TrackRun TrackBench::run(const TrackCase& what) const {

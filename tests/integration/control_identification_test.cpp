@@ -15,7 +15,7 @@ namespace {
 std::vector<IdentificationResult> identify_drive(double motor_lag_s, double latency_s) {
   testing::SimulatedDrive setup;
   setup.scenario.motor.lag_s = motor_lag_s;
-  setup.scenario.motor.command_latency_s = latency_s;
+  setup.scenario.commands.latency_s = latency_s;
   const DriveLog log = testing::drive_in_hall(testing::slalom(setup.robot), setup);
   EXPECT_EQ(log.status, TrackStatus::kReached);
   const test::TemporaryFolder folder;
