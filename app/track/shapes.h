@@ -20,7 +20,7 @@ struct PlannedTrack {
   std::shared_ptr<const maps::SavedMap> map = {};
 };
 
-/// Walls farther away than any shape is long.
+/// A floor of 50 x 50 m around the origin: its walls are farther away than any shape is long.
 sim::World empty_hall();
 
 /// Any shape but goal, mission and recorded. `config.robot` gives the speed.

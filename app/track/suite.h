@@ -16,12 +16,12 @@ namespace rovigo::app {
 struct TrackShape {
   std::string shape = "straight";  ///< straight circle eight square slalom turn curve random goal
                                    ///< mission recorded
-  double length_m = 3.0;               ///< of the whole; of one side or leg for square and turn
-  double radius_m = 0.8;               ///< circle, eight
-  double angle_deg = 90.0;             ///< turn: in place, between two legs
-  double curvature_1_m = 0.8;          ///< largest, of curve, slalom and random
-  double wave_m = 2.0;                 ///< slalom: length of one wave
-  int seed = 1;                        ///< random: which one
+  double length_m = 3.0;           ///< of the whole; of one side or leg for square and turn
+  double radius_m = 0.8;           ///< circle, eight
+  double angle_deg = 90.0;         ///< turn: in place, between two legs
+  double curvature_1_m = 0.8;      ///< largest, of curve, slalom and random
+  double wave_m = 2.0;             ///< slalom: length of one wave
+  int seed = 1;                    ///< random: which one
   double first_heading_off_deg = 0.0;  ///< the rover is put down turned by this, left positive
   // goal: planned from where rovers are put down in a world, on its true grid; or, on a map file,
   // from where its recording began. mission: start, goal and headings drawn by the run's seed.

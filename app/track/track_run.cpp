@@ -77,6 +77,12 @@ void TrackBench::open_ground(const TrackGroup& group, const std::string& traject
   maps_[trajectory] = open_track_map(shape, suite_.folder, config_);
 }
 
+TrackBench TrackBench::with_control(const control::ControlConfig& control) const {
+  TrackBench bench = *this;
+  bench.config_.control = control;
+  return bench;
+}
+
 RovigoConfig TrackBench::config_at(double speed_m_s) const {
   RovigoConfig config = config_;
   config.robot.max_speed_m_s = speed_m_s;
@@ -111,7 +117,7 @@ control::DriveLog TrackBench::drive(const TrackCase& what, const PlannedTrack& t
   // Not recognised: the drive then says that the pose is lost.
   if (group.pose == "slam") look_around(simulator, *poses, track.start);
   return drive_in_simulator(simulator, track.world_from_map, *poses, *controller,
-                            track.trajectory.duration_s(), {});
+                            track.trajectory.duration_s(), config, {});
 }
 
 TrackRun TrackBench::run(const TrackCase& what) const {
