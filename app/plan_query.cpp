@@ -33,6 +33,15 @@ maps::SavedMap open_planning_map(const std::filesystem::path& path, const Consol
   return map;
 }
 
+planning::DrivePlanner drive_planner_on(const maps::SavedMap& map, const RovigoConfig& config) {
+  std::vector<TPoint2D> been;
+  been.reserve(map.trajectory.size());
+  for (const auto& stored : map.trajectory) {
+    been.push_back(maps::position_of(TPose2D(stored.map_from_base.asTPose())));
+  }
+  return {map.grid, config.robot, config.inflation, config.planning, been};
+}
+
 RovigoConfig with_route_options(RovigoConfig config, const RouteRequest& route) {
   if (route.planner) {
     if (!planning::parse_planner_kind(*route.planner)) {

@@ -11,12 +11,15 @@
 #include "app/console.h"
 #include "app/report/map_picture.h"
 #include "maps/map_file.h"
-#include "planning/planner.h"
+#include "planning/drive_planner.h"
 
 namespace rovigo::app {
 
 /// The map with its no-go zones drawn into the grid as obstacles; warnings go to the console.
 maps::SavedMap open_planning_map(const std::filesystem::path& path, const Console& console);
+
+/// Plans that are to be driven on this map.
+planning::DrivePlanner drive_planner_on(const maps::SavedMap& map, const RovigoConfig& config);
 
 /// Settings with --planner and --map-mode applied. Throws InputError for values that do not exist.
 RovigoConfig with_route_options(RovigoConfig config, const RouteRequest& route);

@@ -22,21 +22,46 @@ constexpr double kOpenedRadiusM = 0.25;
 /// Of the margin, what is kept in any case.
 constexpr double kLeastShare = 0.75;
 
+/// Cells within `radius_m` of a point.
+std::vector<bool> around(const std::vector<TPoint2D>& points, double radius_m,
+                         const maps::GridGeometry& g) {
+  OccupancyGrid marked(g, OccupancyGrid::kFree);
+  for (const TPoint2D& p : points) {
+    if (g.contains(p)) marked.at(g.cell_at(p)) = OccupancyGrid::kOccupied;
+  }
+  std::vector<bool> out;
+  out.reserve(g.size());
+  for (const float d : maps::distance_to_occupied(marked).meters) {
+    out.push_back(static_cast<double>(d) <= radius_m);
+  }
+  return out;
+}
+
 /// The grid with unseen ground as obstacles. Only where two cells by two are unknown: a gap between
-/// the camera's rays hides nothing that stands on the floor.
-OccupancyGrid with_unseen_blocked(const OccupancyGrid& grid) {
+/// the camera's rays hides nothing that stands on the floor. The camera does not see the floor
+/// under the rover and beside it; where one has been there is nothing.
+OccupancyGrid with_unseen_blocked(const OccupancyGrid& grid, const std::vector<TPoint2D>& been,
+                                  double clear_m) {
   OccupancyGrid out = grid;
   const auto& g = grid.geometry;
+  const std::vector<bool> known = around(been, clear_m, g);
   for (int y = 0; y + 1 < g.height; ++y) {
     for (int x = 0; x + 1 < g.width; ++x) {
       const Cell block[] = {{x, y}, {x + 1, y}, {x, y + 1}, {x + 1, y + 1}};
-      const bool whole = std::all_of(std::begin(block), std::end(block),
-                                     [&](Cell c) { return OccupancyGrid::is_unknown(grid.at(c)); });
+      const bool whole = std::all_of(std::begin(block), std::end(block), [&](Cell c) {
+        return OccupancyGrid::is_unknown(grid.at(c)) && !known[g.index_of(c)];
+      });
       if (!whole) continue;
       for (const Cell c : block) out.at(c) = OccupancyGrid::kOccupied;
     }
   }
   return out;
+}
+
+/// So that what was driven once can be driven again, with the margin, a cell or so aside.
+double clear_where_been_m(const OccupancyGrid& grid, const maps::InflationConfig& inflation,
+                          const PlannerConfig& config) {
+  return inflation.robot_radius_m + config.drive_margin_m + 2.0 * grid.geometry.resolution_m;
 }
 
 /// Passable cells with an obstacle nearer than `keep_m` to their centres.
@@ -58,14 +83,15 @@ bool margin_wanted(const maps::InflationConfig& inflation, const PlannerConfig& 
 }  // namespace
 
 DrivePlanner::DrivePlanner(const OccupancyGrid& grid, const maps::RobotModel& robot,
-                           const maps::InflationConfig& inflation, const PlannerConfig& config)
+                           const maps::InflationConfig& inflation, const PlannerConfig& config,
+                           const std::vector<TPoint2D>& been)
     : grid_(grid),
       robot_(robot),
       inflation_(inflation),
       config_(config),
       keeps_margin_(margin_wanted(inflation, config)),
       strict_(keeps_margin_ && inflation.map_mode == maps::MapMode::kKnownFree
-                  ? with_unseen_blocked(grid)
+                  ? with_unseen_blocked(grid, been, clear_where_been_m(grid, inflation, config))
                   : grid,
               robot, inflation, config) {
   if (!keeps_margin_) return;

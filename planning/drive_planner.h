@@ -12,7 +12,8 @@
 namespace rovigo::planning {
 
 /// Like Planner, but stricter:
-/// - in map mode 0 unseen ground counts as an obstacle, with robot_radius_m around it;
+/// - in map mode 0 unseen ground counts as an obstacle, with robot_radius_m around it, except where
+///   a rover has been;
 /// - cells nearer to an obstacle than robot_radius_m + drive_margin_m are closed; where start, goal
 ///   or the only way lie in them, just those that must be passed are opened;
 /// - three quarters of drive_margin_m beside the rover's rectangle is kept in any case, but for the
@@ -20,9 +21,11 @@ namespace rovigo::planning {
 /// is.
 class DrivePlanner {
  public:
-  /// Throws maps::InputError for settings out of range. The grid is copied.
+  /// `been`: where a rover has stood or driven. Throws maps::InputError for settings out of range.
+  /// The grid is copied.
   DrivePlanner(const maps::OccupancyGrid& grid, const maps::RobotModel& robot,
-               const maps::InflationConfig& inflation, const PlannerConfig& config);
+               const maps::InflationConfig& inflation, const PlannerConfig& config,
+               const std::vector<TPoint2D>& been = {});
 
   /// The message tells how much of the way leaves less than the margin.
   PlanResult plan(const PlanRequest& request) const;

@@ -10,7 +10,6 @@
 #include "app/resources.h"
 #include "app/simulated_drive.h"
 #include "maps/error.h"
-#include "planning/drive_planner.h"
 
 namespace rovigo::app {
 
@@ -44,7 +43,7 @@ int run_drive(const DriveOptions& options) {
   const maps::SavedMap map = open_planning_map(options.map, console);
   planning::PlanRequest request = plan_request(options.route, map);
   request.seed = options.seed;
-  const planning::DrivePlanner planner(map.grid, config.robot, config.inflation, config.planning);
+  const planning::DrivePlanner planner = drive_planner_on(map, config);
   const TimedPlan plan = timed_plan([&](const auto& r) { return planner.plan(r); }, request);
   if (plan.result.status != planning::PlanStatus::kOk) {
     console.result(plan_json(plan), plan_message(plan.result), plan_rows(plan));

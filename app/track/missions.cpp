@@ -3,11 +3,11 @@
 #include <vector>
 
 #include "app/ground.h"
+#include "app/plan_query.h"
 #include "app/resources.h"
 #include "maps/distance_field.h"
 #include "maps/error.h"
 #include "maps/zones.h"
-#include "planning/drive_planner.h"
 #include "sim/random.h"
 
 namespace rovigo::app {
@@ -17,6 +17,7 @@ namespace {
 constexpr double kLowestObstacleM = 0.02;
 constexpr double kHeadroomM = 0.1;
 constexpr double kShortestM = 1.0;
+constexpr float kNearRecordedM = 1.0F;
 constexpr int kDraws = 200;
 
 maps::SavedMap true_map(const std::string& world, const RovigoConfig& config) {
@@ -27,28 +28,40 @@ maps::SavedMap true_map(const std::string& world, const RovigoConfig& config) {
   return map;
 }
 
-planning::DrivePlanner planner_on(const maps::SavedMap& map, const RovigoConfig& config) {
-  return {map.grid, config.robot, config.inflation, config.planning};
-}
-
 PlannedTrack track_of(const planning::PlanResult& plan, std::shared_ptr<const maps::SavedMap> map) {
   const Ground ground = ground_of(*map, std::nullopt);
   return {ground.world, plan.trajectory, plan.trajectory.points.front().pose, ground.world_from_map,
           std::move(map)};
 }
 
-/// Where the rover may stand, and whichever way it faces keeps the margin of drives.
-std::vector<TPoint2D> places_on(const maps::OccupancyGrid& grid, const RovigoConfig& config) {
+/// How far every cell lies from where the recording went; 0 where there was none.
+maps::DistanceField distance_to_recorded(const maps::SavedMap& map) {
+  maps::OccupancyGrid way(map.grid.geometry, maps::OccupancyGrid::kFree);
+  for (const auto& stored : map.trajectory) {
+    const maps::Cell at =
+        way.geometry.cell_at(maps::position_of(TPose2D(stored.map_from_base.asTPose())));
+    if (way.geometry.contains(at)) way.at(at) = maps::OccupancyGrid::kOccupied;
+  }
+  if (map.trajectory.empty()) way.cells.assign(way.cells.size(), maps::OccupancyGrid::kOccupied);
+  return maps::distance_to_occupied(way);
+}
+
+/// Where the rover may stand, whichever way it faces, with the margin of drives; on a recorded map
+/// only near to where the recording went: what was seen from afar is mapped to 10 cm.
+std::vector<TPoint2D> places_on(const maps::SavedMap& map, const RovigoConfig& config) {
+  const maps::OccupancyGrid& grid = map.grid;
   const maps::DistanceField field = maps::distance_to_occupied(grid);
+  const maps::DistanceField recorded = distance_to_recorded(map);
   const double room_m = config.robot.robot_radius_m + config.planning.drive_margin_m;
   std::vector<TPoint2D> places;
   for (int y = 0; y < grid.geometry.height; ++y) {
     for (int x = 0; x < grid.geometry.width; ++x) {
       const maps::Cell cell{x, y};
       if (!maps::OccupancyGrid::is_free(grid.at(cell))) continue;
-      if (static_cast<double>(field.at(cell)) >= room_m) {
-        places.push_back(grid.geometry.center_of(cell));
+      if (static_cast<double>(field.at(cell)) < room_m || recorded.at(cell) > kNearRecordedM) {
+        continue;
       }
+      places.push_back(grid.geometry.center_of(cell));
     }
   }
   return places;
@@ -105,7 +118,7 @@ PlannedTrack plan_goal(const std::string& name, const TrackShape& shape,
   }
   request.start_heading_given = true;
   request.goal = {shape.goal_x_m, shape.goal_y_m, 0.0};
-  const planning::PlanResult plan = planner_on(*map, config).plan(request);
+  const planning::PlanResult plan = drive_planner_on(*map, config).plan(request);
   if (plan.status != planning::PlanStatus::kOk) {
     throw maps::InputError("trajectory \"" + name + "\" cannot be driven: " + plan.message);
   }
@@ -119,8 +132,8 @@ PlannedTrack draw_mission(const std::string& name, const TrackShape& shape,
     map =
         std::make_shared<const maps::SavedMap>(true_map("random:" + std::to_string(seed), config));
   }
-  const planning::DrivePlanner planner = planner_on(*map, config);
-  std::vector<TPoint2D> places = places_on(map->grid, config);
+  const planning::DrivePlanner planner = drive_planner_on(*map, config);
+  std::vector<TPoint2D> places = places_on(*map, config);
   if (!places.empty()) {
     MissionDraw draw(std::move(places), seed);
     for (int i = 0; i < kDraws; ++i) {

@@ -92,6 +92,18 @@ TEST(DrivePlanner, RefusesAGoalInAStripOfSeenGroundNarrowerThanTheRover) {
   EXPECT_LT(driven.nearest_reachable_goal->x, 3.0);
 }
 
+TEST(DrivePlanner, WhereARoverHasBeenNothingStands) {
+  auto grid = room(8, 4);
+  fill(grid, 3.0, 0.0, 8.0, 4.0, maps::OccupancyGrid::kUnknown);
+  fill(grid, 3.0, 1.8, 7.0, 2.25, maps::OccupancyGrid::kFree);  // what its body swept
+  std::vector<TPoint2D> been;
+  for (double x = 1.0; x <= 6.5; x += 0.02) been.push_back({x, 2.025});
+  const PlanResult driven =
+      DrivePlanner(grid, maps::RobotModel(), maps::InflationConfig(), {}, been)
+          .plan(from_to({1, 2.025}, {6.5, 2.025}));
+  EXPECT_EQ(driven.status, PlanStatus::kOk) << driven.message;
+}
+
 TEST(DrivePlanner, ForgivesGapsBetweenTheCamerasRays) {
   auto grid = room(8, 4);
   for (int x = 60; x < 100; x += 2) grid.at({x, 40}) = maps::OccupancyGrid::kUnknown;
