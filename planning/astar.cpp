@@ -15,6 +15,15 @@ namespace {
 constexpr double kHeuristicLimit = 3.0e9;  // leaves room for the cost in 32 bits
 constexpr std::uint32_t kIndexMask = (std::uint32_t{1} << SearchGrid::kIndexBits) - 1;
 
+/// Buckets narrow enough that order inside hardly matters: where a way is found that is cheaper by
+/// less than a bucket, all that was expanded behind it is expanded again. Soft costs make many such
+/// ways, equal costs hardly any.
+template <bool soft>
+int bucket_shift(const StepScale& scale) {
+  constexpr int kBucketsPerStepLog2 = soft ? 6 : 3;
+  return std::max(0, static_cast<int>(std::bit_width(scale.straight)) - 1 - kBucketsPerStepLog2);
+}
+
 }  // namespace
 
 /// One search: what does not change while it runs, and what it counts.
@@ -98,101 +107,118 @@ GridSearchResult GridSearch::find(const SearchGrid& grid, maps::Cell start, maps
   return result;
 }
 
+/// The moving parts of one run of A*.
 template <bool soft>
-bool GridSearch::run(Query& query) {
-  const SearchGrid& grid = query.grid;
-  const std::uint8_t* moves = grid.moves();
-  const std::uint8_t* costs = grid.costs();
-  const std::array<int, 8> offsets = grid.offsets();
-  const int stride = grid.stride();
-  const bool is_canonical = grid.has_every_move();
-  std::uint32_t* cost_to_come = cost_to_come_.data();
+struct GridSearch::Expansion {
+  Query& query;
+  const StepPrices& prices = query.prices;
+  const std::uint8_t* moves = query.grid.moves();
+  const std::uint8_t* soft_costs = query.grid.costs();
+  const std::array<int, 8> offsets = query.grid.offsets();
+  const int stride = query.grid.stride();
+  const bool is_canonical = query.grid.has_every_move();
+  std::uint32_t* cost_to_come;
+  std::vector<std::uint32_t>& touched;
+  BucketQueue<Entry>& open;
+  std::uint32_t best = kUnreached;  ///< cost of the goal once it is reached
 
-  // Buckets an eighth of a step wide: narrow enough that order inside hardly matters.
-  const int shift =
-      std::max(0, static_cast<int>(std::bit_width(query.prices.scale().straight)) - 4);
-  const std::size_t ring = std::bit_ceil((query.step_limit() >> shift) + std::size_t{2});
-  if (buckets_.size() < ring) buckets_.resize(ring);
-  for (auto& bucket : buckets_) bucket.clear();
+  std::uint8_t soft_cost(std::uint32_t cell) const { return soft ? soft_costs[cell] : 0; }
+  bool may_prune(std::uint32_t cell) const {
+    return is_canonical && (!soft || is_plain(soft_costs + cell, stride));
+  }
+  /// Does reaching the cell straight leave nothing to try but to go on?
+  bool goes_on(std::uint32_t cell) const { return moves[cell] == 0xFF && may_prune(cell); }
 
-  const maps::Cell start = grid.cell_of(query.start);
-  std::size_t bucket = query.heuristic(start.x, start.y) >> shift;
-  std::size_t waiting = 0;
-  std::uint32_t best = kUnreached;  // cost of the goal once it is reached
-  const std::uint32_t cost_limit = query.cost_limit();
-
-  Entry next_entry{};  // the cell that is next in turn, when it need not wait in a bucket
-  bool is_next = false;
-  const auto expand = [&](std::uint32_t cell, std::uint32_t cost_here, int x, int y,
-                          unsigned tried) {
+  /// Tries these moves from a cell at x, y.
+  void expand(std::uint32_t cell, std::uint32_t cost_here, int x, int y, unsigned tried) {
     ++query.expanded;
-    const std::uint8_t here = soft ? costs[cell] : std::uint8_t{0};
     for_each_move(tried, [&](std::size_t move) {
       const auto next = static_cast<std::uint32_t>(static_cast<int>(cell) + offsets[move]);
       const std::uint32_t cost =
-          cost_here + query.prices.step<soft>(move, here, soft ? costs[next] : std::uint8_t{0});
+          cost_here + prices.step<soft>(move, soft_cost(cell), soft_cost(next));
       const std::uint32_t old = cost_to_come[next];
       if (cost >= old) return;
       const std::uint32_t total = cost + query.heuristic(x + kMoves[move].dx, y + kMoves[move].dy);
       if (total >= best) return;
-      if (old == kUnreached) touched_.push_back(next);
+      if (old == kUnreached) touched.push_back(next);
       cost_to_come[next] = cost;
       if (next == query.goal) {
         best = cost;
-        return;
+      } else {
+        open.push(total, {next | static_cast<std::uint32_t>(move) << SearchGrid::kIndexBits, cost});
       }
-      const std::size_t due = std::max<std::size_t>(total >> shift, bucket);
-      auto& waits_in = buckets_[due & (ring - 1)];
-      const Entry entry{next | static_cast<std::uint32_t>(move) << SearchGrid::kIndexBits, cost};
-      if (due != bucket) {
-        waits_in.push_back(entry);
-        ++waiting;
-        return;
-      }
-      if (is_next) {
-        waits_in.push_back(next_entry);
-        ++waiting;
-      }
-      next_entry = entry;
-      is_next = true;
     });
-  };
-  cost_to_come[query.start] = 0;
+  }
+
+  /// The same for a cell of open ground that a straight move led to, and for those behind it as long
+  /// as they are due and open ground: most of all cells that are ever expanded.
+  void go_on(std::uint32_t cell, std::uint32_t cost, int x, int y, std::size_t move) {
+    constexpr int kAhead = 8;  // cells to fetch memory ahead
+    for (;;) {
+      ++query.expanded;
+      cell = static_cast<std::uint32_t>(static_cast<int>(cell) + offsets[move]);
+      x += kMoves[move].dx;
+      y += kMoves[move].dy;
+      cost += prices.scale().straight;
+      if (cost >= cost_to_come[cell]) return;
+      const std::uint32_t total = cost + query.heuristic(x, y);
+      if (total >= best) return;
+      if (cost_to_come[cell] == kUnreached) touched.push_back(cell);
+      cost_to_come[cell] = cost;
+      if (cell == query.goal) {
+        best = cost;
+        return;
+      }
+      if (!open.is_due(total) || !goes_on(cell)) {
+        open.push(total, {cell | static_cast<std::uint32_t>(move) << SearchGrid::kIndexBits, cost});
+        return;
+      }
+      __builtin_prefetch(cost_to_come + static_cast<int>(cell) + kAhead * offsets[move], 1);
+      __builtin_prefetch(moves + static_cast<int>(cell) + kAhead * offsets[move]);
+    }
+  }
+};
+
+template <bool soft>
+bool GridSearch::run(Query& query) {
+  const SearchGrid& grid = query.grid;
+  Expansion<soft> expansion{.query = query,
+                            .cost_to_come = cost_to_come_.data(),
+                            .touched = touched_,
+                            .open = open_};
+  const maps::Cell start = grid.cell_of(query.start);
+  open_.restart(query.heuristic(start.x, start.y), query.step_limit(),
+                bucket_shift<soft>(query.prices.scale()));
+  const std::uint32_t cost_limit = query.cost_limit();
+  cost_to_come_[query.start] = 0;
   touched_.push_back(query.start);
   if (query.start == query.goal) return true;
-  expand(query.start, 0, start.x, start.y, moves[query.start]);
+  expansion.expand(query.start, 0, start.x, start.y, grid.moves()[query.start]);
 
-  while (is_next || waiting > 0) {
-    if (bucket > best >> shift) break;  // nothing left can improve on the goal's cost
-    if (!is_next) {
-      auto& open = buckets_[bucket & (ring - 1)];
-      if (open.empty()) {
-        ++bucket;
-        continue;
-      }
-      next_entry = open.back();
-      open.pop_back();
-      --waiting;
-    }
-    const Entry entry = next_entry;
-    is_next = false;
+  Entry entry{};
+  // What waits behind the goal's cost cannot improve on it.
+  while (open_.pop(expansion.best, entry)) {
     const std::uint32_t cell = entry.cell_and_move & kIndexMask;
-    if (entry.cost != cost_to_come[cell]) continue;  // improved since
+    if (entry.cost != cost_to_come_[cell]) continue;  // improved since
     if (entry.cost > cost_limit) {
       query.overflow = true;
       return false;
     }
-    const int row = static_cast<int>(cell) / stride;
-    const int x = static_cast<int>(cell) - row * stride - 1;
-    const int y = row - 1;
+    const maps::Cell at = grid.cell_of(cell);
     // On open ground the goal shares its bucket with all cells of equally short ways.
-    if (best != kUnreached && entry.cost + query.heuristic(x, y) >= best) continue;
-    const bool pruned = is_canonical && (!soft || is_plain(costs + cell, stride));
-    const MoveOrder& order = pruned ? kCanonicalMoves : kEveryMove;
-    expand(cell, entry.cost, x, y,
-           order(entry.cell_and_move >> SearchGrid::kIndexBits, moves[cell]));
+    if (expansion.best != kUnreached &&
+        entry.cost + query.heuristic(at.x, at.y) >= expansion.best) {
+      continue;
+    }
+    const std::size_t move = entry.cell_and_move >> SearchGrid::kIndexBits;
+    if (move < kStraightMoves && expansion.goes_on(cell)) {
+      expansion.go_on(cell, entry.cost, at.x, at.y, move);
+    } else {
+      const MoveOrder& order = expansion.may_prune(cell) ? kCanonicalMoves : kEveryMove;
+      expansion.expand(cell, entry.cost, at.x, at.y, order(move, grid.moves()[cell]));
+    }
   }
-  return best != kUnreached;
+  return expansion.best != kUnreached;
 }
 
 /// With a weighted heuristic, cells that are opened again whenever their cost improves can be so
@@ -240,8 +266,7 @@ bool GridSearch::run_weighted(Query& query) {
 
 std::size_t GridSearch::memory_bytes() const {
   std::size_t bytes = (cost_to_come_.capacity() + touched_.capacity()) * sizeof(std::uint32_t);
-  for (const auto& bucket : buckets_) bytes += bucket.capacity() * sizeof(Entry);
-  return bytes + heap_.capacity() * sizeof(WeightedEntry) + expanded_.capacity() / 8;
+  return bytes + open_.memory_bytes() + heap_.capacity() * sizeof(WeightedEntry) + expanded_.capacity() / 8;
 }
 
 std::optional<maps::Cell> GridSearch::nearest_reachable(const SearchGrid& grid, maps::Cell start,

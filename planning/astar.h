@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "planning/bucket_queue.h"
 #include "planning/search_grid.h"
 
 namespace rovigo::planning {
@@ -61,6 +62,8 @@ class GridSearch {
     }
   };
   struct Query;
+  template <bool soft>
+  struct Expansion;
 
   void prepare(const SearchGrid& grid);
   void forget();
@@ -70,7 +73,7 @@ class GridSearch {
   bool run_weighted(Query& query);
   std::vector<std::uint32_t> cost_to_come_;  ///< kUnreached except where a query has been
   std::vector<std::uint32_t> touched_;       ///< cells to clear before the next query
-  std::vector<std::vector<Entry>> buckets_;
+  BucketQueue<Entry> open_;
   std::vector<WeightedEntry> heap_;
   std::vector<bool> expanded_;
 };
