@@ -163,11 +163,12 @@ void JumpPointSearch::go_straight(Query& query, maps::Cell from, std::uint32_t c
 /// `last_due`.
 void JumpPointSearch::go_diagonal(Query& query, maps::Cell at, std::uint32_t cost, std::size_t move,
                                   std::uint32_t last_due) {
-  constexpr int kAhead = 4;  // steps to fetch memory ahead
   const Move& m = kMoves[move];
-  const std::uint8_t* moves = grid_.moves() + grid_.index_of(at);
-  const int step = m.dy * grid_.stride() + m.dx;
-  for (; (*moves >> move & 1U) != 0; moves += step) {
+  const auto goes_on = [&] {
+    return is_open(at.x + m.dx, at.y) && is_open(at.x, at.y + m.dy) &&
+           is_open(at.x + m.dx, at.y + m.dy);
+  };
+  while (goes_on()) {
     const maps::Cell next{at.x + m.dx, at.y + m.dy};
     const std::uint32_t next_cost = cost + query.scale.diagonal;
     const std::uint32_t total =
@@ -183,11 +184,6 @@ void JumpPointSearch::go_diagonal(Query& query, maps::Cell at, std::uint32_t cos
     if (at == query.goal) {
       reach(query, at, cost, move);
       return;
-    }
-    const maps::Cell ahead{at.x + kAhead * m.dx, at.y + kAhead * m.dy};
-    if (geometry_.contains(ahead)) {
-      rows_.prefetch(ahead.x, ahead.y);
-      columns_.prefetch(ahead.y, ahead.x);
     }
     go_straight(query, at, cost, along_x(move));
     go_straight(query, at, cost, along_y(move));
