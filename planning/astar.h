@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "planning/bucket_queue.h"
 #include "planning/search_grid.h"
 
 namespace rovigo::planning {
@@ -31,7 +32,8 @@ struct GridSearchResult {
 /// sqrt 2, so that sums are exact, order cannot depend on rounding, and 32 bits suffice. The open
 /// list is a ring of buckets a fraction of a step wide; inside a bucket the last in is the first
 /// out, and a cell whose cost improves is put in again, which keeps the result exact. Where all
-/// costs are equal, only the moves that MoveOrder leaves are tried.
+/// costs are equal, only the moves that MoveOrder leaves are tried, and runs over open ground
+/// that leave just one are followed without waiting.
 class GridSearch {
  public:
   /// The cheapest way from start to goal. Cells that are outside or impassable are not found.
@@ -61,6 +63,9 @@ class GridSearch {
     }
   };
   struct Query;
+  struct Visit;
+  template <bool soft>
+  struct Expansion;
 
   void prepare(const SearchGrid& grid);
   void forget();
@@ -68,9 +73,13 @@ class GridSearch {
   bool run(Query& query);
   template <bool soft>
   bool run_weighted(Query& query);
+
+  int stride_ = 0;                           ///< of the grid that touched_ is about
   std::vector<std::uint32_t> cost_to_come_;  ///< kUnreached except where a query has been
-  std::vector<std::uint32_t> touched_;       ///< cells to clear before the next query
-  std::vector<std::vector<Entry>> buckets_;
+  /// Cells to clear before the next query: single ones, or a run of them, with its move plus one in
+  /// the top bits, as two numbers (the cell before it, how many).
+  std::vector<std::uint32_t> touched_;
+  BucketQueue<Entry> open_;
   std::vector<WeightedEntry> heap_;
   std::vector<bool> expanded_;
 };

@@ -39,7 +39,6 @@ JumpPointSearch::JumpPointSearch(const SearchGrid& grid)
       geometry_(grid.geometry()),
       rows_(geometry_.width, geometry_.height),
       columns_(geometry_.height, geometry_.width) {
-  labels_.assign(geometry_.size(), {kUnreached, 0});
   for (int y = 0; y < geometry_.height; ++y) {
     for (int x = 0; x < geometry_.width; ++x) {
       if (!grid.is_passable({x, y})) continue;
@@ -52,14 +51,8 @@ JumpPointSearch::JumpPointSearch(const SearchGrid& grid)
 }
 
 std::size_t JumpPointSearch::memory_bytes() const {
-  return rows_.memory_bytes() + columns_.memory_bytes() + sizeof(Label) * labels_.size() +
-         sizeof(std::uint32_t) * touched_.capacity() + sizeof(Entry) * open_.capacity();
-}
-
-void JumpPointSearch::forget() {
-  for (const std::uint32_t cell : touched_) labels_[cell].cost = kUnreached;
-  touched_.clear();
-  open_.clear();
+  return rows_.memory_bytes() + columns_.memory_bytes() + labels_.memory_bytes() +
+         sizeof(Entry) * open_.capacity();
 }
 
 GridSearchResult JumpPointSearch::find(maps::Cell start, maps::Cell goal) {
@@ -69,14 +62,15 @@ GridSearchResult JumpPointSearch::find(maps::Cell start, maps::Cell goal) {
     return result;
   }
   for (const StepScale& scale : kStepScales) {
-    forget();
+    labels_.clear();
+    open_.clear();
     Query query{.start = start, .goal = goal, .scale = scale};
     result.found = run(query);
     result.expanded_cells = query.expanded;
     if (query.overflow) continue;
     if (!result.found) return result;
-    result.cost_m =
-        static_cast<double>(labels_[index_of(goal)].cost) / scale.straight * geometry_.resolution_m;
+    result.cost_m = static_cast<double>(labels_.find(index_of(goal))->cost) / scale.straight *
+                    geometry_.resolution_m;
     collect_path(query, result);
     return result;
   }
@@ -87,8 +81,7 @@ GridSearchResult JumpPointSearch::find(maps::Cell start, maps::Cell goal) {
 bool JumpPointSearch::run(Query& query) {
   const std::uint32_t goal = index_of(query.goal);
   const std::uint32_t start = index_of(query.start);
-  labels_[start] = {0, start};
-  touched_.push_back(start);
+  labels_.set({start, 0, start});
   if (start == goal) return true;
   query.from = start;
   query.total = query.scale.octile(query.start.x - query.goal.x, query.start.y - query.goal.y);
@@ -110,7 +103,7 @@ bool JumpPointSearch::run(Query& query) {
                   query.total + kStepsAtOnce * query.scale.straight);
       continue;
     }
-    if (entry.cost != labels_[entry.cell].cost) continue;  // improved since
+    if (entry.cost != labels_.find(entry.cell)->cost) continue;  // improved since
     if (entry.cell == goal) return true;
     ++query.expanded;
     query.from = entry.cell;
@@ -122,8 +115,9 @@ bool JumpPointSearch::run(Query& query) {
 /// A jump point reached by a straight run: on, and round the corners that end beside it.
 void JumpPointSearch::expand(Query& query, std::uint32_t index) {
   const maps::Cell at = cell_of(index);
-  const std::uint32_t cost = labels_[index].cost;
-  const std::size_t move = labels_[index].before >> kMoveShift;
+  const LabelTable::Label label = *labels_.find(index);
+  const std::uint32_t cost = label.cost;
+  const std::size_t move = label.before >> kMoveShift;
   const Move& m = kMoves[move];
   go_straight(query, at, cost, move);
   for (const int side : {1, -1}) {
@@ -163,11 +157,12 @@ void JumpPointSearch::go_straight(Query& query, maps::Cell from, std::uint32_t c
 /// `last_due`.
 void JumpPointSearch::go_diagonal(Query& query, maps::Cell at, std::uint32_t cost, std::size_t move,
                                   std::uint32_t last_due) {
-  constexpr int kAhead = 4;  // steps to fetch memory ahead
   const Move& m = kMoves[move];
-  const std::uint8_t* moves = grid_.moves() + grid_.index_of(at);
-  const int step = m.dy * grid_.stride() + m.dx;
-  for (; (*moves >> move & 1U) != 0; moves += step) {
+  const auto goes_on = [&] {
+    return is_open(at.x + m.dx, at.y) && is_open(at.x, at.y + m.dy) &&
+           is_open(at.x + m.dx, at.y + m.dy);
+  };
+  while (goes_on()) {
     const maps::Cell next{at.x + m.dx, at.y + m.dy};
     const std::uint32_t next_cost = cost + query.scale.diagonal;
     const std::uint32_t total =
@@ -184,11 +179,6 @@ void JumpPointSearch::go_diagonal(Query& query, maps::Cell at, std::uint32_t cos
       reach(query, at, cost, move);
       return;
     }
-    const maps::Cell ahead{at.x + kAhead * m.dx, at.y + kAhead * m.dy};
-    if (geometry_.contains(ahead)) {
-      rows_.prefetch(ahead.x, ahead.y);
-      columns_.prefetch(ahead.y, ahead.x);
-    }
     go_straight(query, at, cost, along_x(move));
     go_straight(query, at, cost, along_y(move));
   }
@@ -200,10 +190,9 @@ void JumpPointSearch::reach(Query& query, maps::Cell cell, std::uint32_t cost, s
     return;
   }
   const std::uint32_t index = index_of(cell);
-  Label& label = labels_[index];
-  if (cost >= label.cost) return;
-  if (label.cost == kUnreached) touched_.push_back(index);
-  label = {cost, query.from | static_cast<std::uint32_t>(move) << kMoveShift};
+  const LabelTable::Label* known = labels_.find(index);
+  if (known != nullptr && cost >= known->cost) return;
+  labels_.set({index, cost, query.from | static_cast<std::uint32_t>(move) << kMoveShift});
   const std::uint32_t total =
       cost + query.scale.octile(cell.x - query.goal.x, cell.y - query.goal.y);
   open_.push_back({total, cost, index, kArrived});
@@ -212,7 +201,7 @@ void JumpPointSearch::reach(Query& query, maps::Cell cell, std::uint32_t cost, s
 
 void JumpPointSearch::collect_path(const Query& query, GridSearchResult& result) const {
   const std::uint32_t start = index_of(query.start);
-  const auto before = [&](std::uint32_t index) { return labels_[index].before & kCellMask; };
+  const auto before = [&](std::uint32_t index) { return labels_.find(index)->before & kCellMask; };
   std::size_t steps = 0, diagonal_steps = 0;
   maps::Cell at = query.goal;
   for (std::uint32_t i = index_of(query.goal); i != start; i = before(i)) {

@@ -6,6 +6,7 @@
 
 #include "planning/astar.h"
 #include "planning/bit_rows.h"
+#include "planning/label_table.h"
 #include "planning/step_scale.h"
 
 namespace rovigo::planning {
@@ -34,7 +35,7 @@ class JumpPointSearch {
     std::uint32_t cost;
     std::uint32_t cell;
     /// kArrived: a jump point to expand. Else a diagonal run that waits for its turn: where it
-    /// comes from and its move, as in Label::before.
+    /// comes from and its move, as in LabelTable::Label::before.
     std::uint32_t run;
     /// The heap's top is the greatest: the cheapest, among equals the one nearest to the goal.
     bool operator<(const Entry& other) const {
@@ -49,7 +50,6 @@ class JumpPointSearch {
                    std::uint32_t last_due);
   void reach(Query& query, maps::Cell cell, std::uint32_t cost, std::size_t move);
   void collect_path(const Query& query, GridSearchResult& result) const;
-  void forget();
 
   std::uint32_t index_of(maps::Cell c) const {
     return static_cast<std::uint32_t>(c.y) * static_cast<std::uint32_t>(geometry_.width) +
@@ -64,15 +64,9 @@ class JumpPointSearch {
   const SearchGrid& grid_;
   maps::GridGeometry geometry_;
   BitRows rows_, columns_;
-  /// What is known of a cell, side by side in memory because it is needed together.
-  struct Label {
-    std::uint32_t cost;  ///< to come; kUnreached except where a query has been
-    /// The jump point before (a diagonal run leads from it, then a straight one), and in the top
-    /// bits the move of arrival.
-    std::uint32_t before;
-  };
-  std::vector<Label> labels_;
-  std::vector<std::uint32_t> touched_;
+  /// `before` is the jump point before (a diagonal run leads from it, then a straight one), and in
+  /// the top bits the move of arrival.
+  LabelTable labels_;
   std::vector<Entry> open_;  ///< a heap
 };
 

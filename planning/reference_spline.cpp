@@ -34,13 +34,15 @@ class BandedTriangle {
   explicit BandedTriangle(std::size_t n) : kept_(n) {}
 
   /// Adds the equation sum_i row[i] c[first + i] = rhs, of which `count` entries are not zero.
-  void add(std::size_t first, std::size_t count, Equation work) {
+  /// Returns by how much that raises the least sum of squares.
+  double add(std::size_t first, std::size_t count, Equation work) {
     end_ = std::min(kept_.size(), std::max(end_, first + count));  // columns used so far
     for (std::size_t column = first; column < end_; ++column) {
       if (work.row[0] != 0.0) rotate(kept_[column], work);
       for (int k = 1; k < kWidth; ++k) work.row[k - 1] = work.row[k];
       work.row[kWidth - 1] = 0.0;
     }
+    return work.rhs.squaredNorm();
   }
 
   const std::vector<Equation>& equations() const { return kept_; }
@@ -107,6 +109,7 @@ class Fit {
       : points_(&points), knots_(std::move(knots)), triangle_(control_count()) {
     span_.reserve(sites.size());
     basis_.reserve(sites.size());
+    double left = 0.0;
     std::size_t k = kDegree;
     for (std::size_t i = 0; i < sites.size(); ++i) {
       while (k + 1 < control_count() && sites[i] >= knots_[k + 1]) ++k;
@@ -117,9 +120,12 @@ class Fit {
         site.row[j] = basis_.back()[static_cast<std::size_t>(j)];
       }
       site.rhs = Point(points[i].x, points[i].y);
-      triangle_.add(k - kDegree, kOrder, site);
+      left += triangle_.add(k - kDegree, kOrder, site);
     }
     set_control(triangle_.solved());
+    // Where knots crowd towards an end the control points are hardly determined and carry large
+    // errors; the least residual is known all the same.
+    residual_ = left;
   }
 
   std::size_t control_count() const { return knots_.size() - kOrder; }

@@ -153,5 +153,20 @@ TEST(ReferenceSpline, KeepsItsBoundOnLongWindingWays) {
   }
 }
 
+/// The winding way of tests/benchmark/planning_scipy, which prints SciPy's figures beside ours.
+/// With nearly as many knots as cells the control points of the least-squares fit are hardly
+/// determined; its residual must not be taken from them.
+TEST(GoldenSpline, HasAsManyKnotsAsSciPysOnAThousandCells) {
+  std::vector<TPoint2D> cells;
+  for (int i = 0; i < 1000; ++i) {
+    const double a = 0.02 * i;
+    cells.push_back(
+        {std::round(20.0 * std::sin(a) + 100.0 * a), std::round(50.0 * std::cos(2.0 * a))});
+  }
+  EXPECT_EQ(reference_spline(cells, 2.0).curve.knots().size(), 1004U);
+  EXPECT_EQ(reference_spline(cells, 4.0).curve.knots().size(), 980U);
+  EXPECT_EQ(reference_spline(cells, 6.0).curve.knots().size(), 950U);
+}
+
 }  // namespace
 }  // namespace rovigo::planning

@@ -143,6 +143,36 @@ INSTANTIATE_TEST_SUITE_P(RandomGrids, AStarAgainstDijkstra,
                                          Case{4, 0.0, 0.3}, Case{8, 3.0, 0.15}, Case{8, 20.0, 0.3},
                                          Case{4, 3.0, 0.2}));
 
+/// Long runs over open ground, on grids of one size in memory and two shapes, by one search: what a
+/// query leaves behind would mislead the next.
+TEST(AStarOnOpenGround, CostsAreEqualToDijkstrasQueryAfterQuery) {
+  std::mt19937_64 random(20240605);
+  GridSearch search;
+  for (int i = 0; i < 60; ++i) {
+    maps::GridGeometry g;
+    g.resolution_m = 0.05;
+    g.width = i % 2 == 0 ? 94 : 30;
+    g.height = i % 2 == 0 ? 30 : 94;
+    Costmap map(g);
+    for (int k = 0; k < 8; ++k) {
+      const int x = static_cast<int>(random() % static_cast<unsigned>(g.width - 6));
+      const int y = static_cast<int>(random() % static_cast<unsigned>(g.height - 6));
+      for (int c = 0; c < 36; ++c) map.at({x + c % 6, y + c / 6}) = k < 5 ? Costmap::kLethal : 90;
+    }
+    const auto random_cell = [&] {
+      return Cell{static_cast<int>(random() % static_cast<unsigned>(g.width)),
+                  static_cast<int>(random() % static_cast<unsigned>(g.height))};
+    };
+    const Cell start = random_cell(), goal = random_cell();
+    const double weight = i % 3 == 0 ? 0.0 : 2.0;
+    const double want = dijkstra(map, start, goal, 8, weight);
+    const auto got = search.find(SearchGrid(map, 8), start, goal, {.soft_cost = weight});
+    ASSERT_EQ(got.found, std::isfinite(want)) << "map " << i;
+    if (!got.found) continue;
+    ASSERT_NEAR(got.cost_m, want, 1e-4 * want + 1e-12) << "map " << i;
+  }
+}
+
 TEST_P(AStarAgainstDijkstra, CostToGoIsEqualInEveryCell) {
   const Case param = GetParam();
   std::mt19937_64 random(20240602);

@@ -1,15 +1,14 @@
 #include "tests/support/planning_campaign.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <deque>
 #include <exception>
 #include <filesystem>
 #include <optional>
 #include <random>
-#include <thread>
 
+#include "app/parallel.h"
 #include "maps/movingai.h"
 #include "maps/ros_map.h"
 #include "planning/check.h"
@@ -71,14 +70,8 @@ class Campaign {
 
   CampaignReport run() {
     std::vector<CampaignReport> reports(options_.queries);
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-      for (std::size_t i = next++; i < reports.size(); i = next++) reports[i] = query(i);
-    };
-    std::vector<std::thread> helpers;
-    for (unsigned k = 1; k < options_.threads; ++k) helpers.emplace_back(work);
-    work();
-    for (std::thread& helper : helpers) helper.join();
+    app::run_parallel(reports.size(), options_.threads,
+                      [&](std::size_t i) { reports[i] = query(i); });
     CampaignReport sum;
     for (const CampaignReport& report : reports) sum.add(report);
     return sum;

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
-#include <thread>
 
+#include "app/parallel.h"
 #include "tests/support/planning_campaign.h"
 
 namespace {
@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
     const std::size_t share = total / maps.size() + (i < total % maps.size() ? 1 : 0);
     const CampaignReport report = rovigo::test::run_campaign(
         maps[i].second,
-        {.queries = share, .seed = i + 1, .threads = std::thread::hardware_concurrency()});
+        {.queries = share, .seed = i + 1, .threads = rovigo::app::machine_threads()});
     print(maps[i].first, report);
     sum.add(report);
   }
