@@ -88,7 +88,7 @@ void Localizer::Impl::look_beside(const SeenView& view, bool recognized) {
   const double time_s = view.frame.time_s;
   const Se3 here = believed(time_s);
   const SlideSpectrum spectrum = slide.around(view.features, here);
-  if (spectrum.best() < kMinTelling || spectrum.elsewhere.empty()) return;
+  if (spectrum.best() < kMinTelling) return;
   bool has_rival = false;
   for (const Slide& s : spectrum.elsewhere) {
     if (s.shift_map.norm() >= kSamePlaceM) {
@@ -100,8 +100,11 @@ void Localizer::Impl::look_beside(const SeenView& view, bool recognized) {
       evidence.agreeing_frames = 0;  // it could be either
     }
   }
-  if (has_rival && !recognized && misses == 0) {
+  if (recognized || misses > 0) return;
+  if (has_rival) {
     recognize(view, here, std::min(1.0, spectrum.best() / kFullWeightInliers));
+  } else if (inliers_now >= kSureTelling) {
+    recognize(view, here, std::min(1.0, inliers_now / kFullWeightInliers));
   }
 }
 
