@@ -19,12 +19,14 @@ constexpr double kPlausibleScanShare = 0.75;  // to be believed for a moment, un
 constexpr double kSamePlaceM = 0.7;           // no reason to go elsewhere
 constexpr int kSureScanPoints = 60;
 constexpr double kTellingMargin = 0.04;  // makes up for a scan that shows less
+constexpr double kBetterHeld = 0.03;     // of the local scan: walls in one view alone have misled
 constexpr double kRefutedConfidence = 0.05;
 constexpr double kNoShapeMargin = 0.1;
 constexpr double kWorseThanRival = -0.05;
 constexpr double kMostRival = 0.2;  // share of the votes that another place may have
 constexpr double kStillScanShare = 0.5;
-constexpr double kSureRecognition = 0.9;  // where views cannot be added up
+constexpr double kSureRecognition = 0.9;                           // where views cannot be added up
+constexpr double kSureRecognitions = 4.0, kHardlyRivalled = 0.02;  // make up for few scan points
 constexpr double kFullWeightInliers = 40.0;
 // Of places beside one another, by the features that fit: a sixth fewer leaves a quarter.
 constexpr double kLikenessPower = 8.0, kLeastLikeness = 0.05;
@@ -130,6 +132,9 @@ void Localizer::Impl::judge_places(const SeenView& view, bool is_new) {
   const Se3 place = best->map_from_odom * odom;
   const bool there = state != State::kSearching &&
                      (place.translation - believed(time_s).translation).norm() < kSamePlaceM;
+  if (there && evidence.inliers == 0 && best->scan_share > evidence.scan_share + kBetterHeld) {
+    motion.place(time_s, place, kFixSigmaM, kFixSigmaRad);
+  }
   if (there || (matches_here() && best->recognitions <= evidence.recognitions)) return;
   // Odometry says it cannot be elsewhere: the view has jumped, or it was never there.
   if (!was_sure || confidence_of(evidence) < kRefutedConfidence) {
@@ -184,8 +189,10 @@ bool Localizer::Impl::is_convincing() const {
     return evidence.depth_share >= kSureDepthShare && evidence.inliers >= kSureTelling &&
            evidence.recognitions >= kSureRecognition && evidence.rival_share <= kMostRival;
   }
-  const bool enough_seen =
-      evidence.scan_points >= kSureScanPoints || evidence.shape_margin >= kTellingMargin;
+  const bool clearly_recognized =
+      evidence.recognitions >= kSureRecognitions && evidence.rival_share <= kHardlyRivalled;
+  const bool enough_seen = evidence.scan_points >= kSureScanPoints ||
+                           evidence.shape_margin >= kTellingMargin || clearly_recognized;
   return enough_seen && evidence.scan_share >= kSureScanShare &&
          evidence.rival_share <= kMostRival && confidence_of(evidence) >= kOkConfidence;
 }
