@@ -30,6 +30,7 @@ constexpr double kSureRecognitions = 4.0, kHardlyRivalled = 0.02;  // make up fo
 constexpr double kFullWeightInliers = 40.0;
 // Of places beside one another, by the features that fit: a sixth fewer leaves a quarter.
 constexpr double kLikenessPower = 8.0, kLeastLikeness = 0.05;
+constexpr double kStepCost = 0.03;  // of the shape: along a wall it hardly changes
 constexpr double kSurelyBetter = 1.15, kNearlyAsGood = 0.85;  // one brick aside
 constexpr int kSureStep = 25;                                 // features; by chance a dozen meet
 
@@ -85,29 +86,33 @@ void Localizer::Impl::recognize(const SeenView& view, const Se3& map_from_base, 
 }
 
 /// Is the view better explained a brick or a panel further? A step aside is taken at once; what is
-/// farther off becomes a rival that shape has to refute.
+/// farther off becomes a rival that shape has to refute. A view that matches many landmarks that
+/// look like no other speaks for the place as one recognised does.
 void Localizer::Impl::look_beside(const SeenView& view, bool recognized) {
   const double time_s = view.frame.time_s;
   const Se3 here = believed(time_s);
   const SlideSpectrum spectrum = slide.around(view.features, here);
-  if (spectrum.best() < kMinTelling) return;
-  bool has_rival = false;
   for (const Slide& s : spectrum.elsewhere) {
-    if (s.shift_map.norm() >= kSamePlaceM) {
-      has_rival |= likeness(s.features, spectrum.best()) >= kLeastLikeness;
-    } else if (s.features > kSurelyBetter * spectrum.here && s.features >= kSureStep) {
+    if (s.shift_map.norm() >= kSamePlaceM) continue;
+    if (s.features > kSurelyBetter * spectrum.here && s.features >= kSureStep &&
+        fits_as_well(time_s, here, s)) {
       step_aside(time_s, shifted(here, s.shift_map));
       return;
-    } else if (s.features > kNearlyAsGood * spectrum.here) {
+    }
+    if (s.features >= kMinTelling && s.features > kNearlyAsGood * spectrum.here) {
       evidence.agreeing_frames = 0;  // it could be either
     }
   }
-  if (recognized || misses > 0) return;
-  if (has_rival) {
-    recognize(view, here, std::min(1.0, spectrum.best() / kFullWeightInliers));
-  } else if (inliers_now >= kSureTelling) {
+  if (!recognized && misses == 0 && inliers_now >= kSureTelling) {
     recognize(view, here, std::min(1.0, inliers_now / kFullWeightInliers));
   }
+}
+
+/// Features alone may meet by chance; what stands around has to fit there, too.
+bool Localizer::Impl::fits_as_well(double time_s, const Se3& here, const Slide& aside) {
+  const Se3 odom = odom_from_base(time_s);
+  return finder.support(shifted(here, aside.shift_map), odom).shape >=
+         finder.support(here, odom).shape - kStepCost;
 }
 
 /// The same room, but matched one brick too far.
