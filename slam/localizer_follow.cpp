@@ -13,6 +13,7 @@ constexpr int kLostAfterMisses = 3;       // and so many frames
 constexpr double kReconfirmAfterS = 0.5;  // blind for longer, the rover may be anywhere
 constexpr double kHeldScanShare = 0.75;   // of one view, to hold a pose by it alone
 constexpr std::size_t kEnoughScan = 40;   // points of it
+constexpr double kNewShare = 0.1;         // of the local scan, from one frame to the next
 constexpr double kKeptInliers = 0.98;     // a frame, rounded down; half is left after a second
 
 }  // namespace
@@ -39,8 +40,11 @@ bool Localizer::Impl::hold_by_scan(const SeenView& view, const std::vector<int>&
   const double time_s = view.frame.time_s;
   const Se3 pose = believed(time_s);
   if (view.shows_plenty() && checker.map_knows_view(pose)) return false;
-  const GridMatch match = match_scan(finder.field(), view.scan, to_planar(pose),
-                                     motion.dead_reckoning().pose_covariance());
+  // One wall leaves much open; what was seen a moment ago, around a corner, does not.
+  GridMatch match = match_scan(finder.field(), finder.local_scan(), to_planar(pose),
+                               motion.dead_reckoning().pose_covariance());
+  match.look.information *= kNewShare;
+  match.look.gradient *= kNewShare;
   const Se3 held = from_planar(match.look.map_from_base);
   const ViewCheck seen = checker.check(view, local_landmarks, held, SeenView::kPlenty);
   if (seen.contradicts || seen.scan_share < kHeldScanShare) return false;

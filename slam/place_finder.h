@@ -69,6 +69,8 @@ class PlaceFinder {
   /// Forgets recognitions, not the scan: where views cannot be tied together.
   void forget_candidates() { candidates_.clear(); }
 
+  /// The local scan in base_link of the newest frame.
+  const std::vector<ScanPoint>& local_scan() const { return points_; }
   bool has_grid() const { return field_.has_value(); }
   const SignedDistanceField& field() const { return *field_; }
 
