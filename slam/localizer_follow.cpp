@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kLostAfterS = 0.3;       // of contradiction, after the view has jumped,
 constexpr int kLostAfterMisses = 3;       // and so many frames
+constexpr double kUnvouchedAfterS = 0.8;  // looking around after such a jump, and nothing fits
 constexpr double kReconfirmAfterS = 0.5;  // blind for longer, the rover may be anywhere
 constexpr double kHeldScanShare = 0.75;   // of one view, to hold a pose by it alone
 constexpr std::size_t kEnoughScan = 40;   // points of it
@@ -78,6 +79,7 @@ void Localizer::Impl::note_agreement(double time_s, int inliers, const ViewCheck
   misses = 0;
   broken = doubt = false;
   contradicted_since_s.reset();
+  unvouched_since_s.reset();
 }
 
 void Localizer::Impl::miss(const SeenView& view, const std::vector<int>& local_landmarks,
@@ -97,7 +99,16 @@ void Localizer::Impl::miss(const SeenView& view, const std::vector<int>& local_l
   if (contradicted && !contradicted_since_s) contradicted_since_s = time_s;
   const bool carried_off = contradicted_since_s && misses >= kLostAfterMisses &&
                            time_s - *contradicted_since_s >= kLostAfterS;
-  if (motion.carried() || prediction.sigma_position_m > config.localizer.lost_sigma_m) {
+  // Where the map knows nothing of the view, nothing contradicts it, and nothing vouches for it.
+  if (!(broken && doubt && motion.planar())) {
+    unvouched_since_s.reset();
+  } else if (!unvouched_since_s) {
+    unvouched_since_s = time_s;
+  }
+  const bool unvouched = was_sure && unvouched_since_s && misses >= kLostAfterMisses &&
+                         time_s - *unvouched_since_s >= kUnvouchedAfterS;
+  if (unvouched || motion.carried() ||
+      prediction.sigma_position_m > config.localizer.lost_sigma_m) {
     lose();
   } else if (carried_off) {
     was_sure ? lose() : drop_guess(time_s);

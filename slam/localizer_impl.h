@@ -87,6 +87,7 @@ struct Localizer::Impl {
   bool was_sure = false;  ///< of this place, before the camera was blind
   bool doubt = false;     ///< the newest frame shows plenty and does not fit
   std::optional<double> contradicted_since_s;
+  std::optional<double> unvouched_since_s;
   double last_fix_s = -1e9;
   double last_frame_s = -1e9;
   double frame_interval_s = 0.1;  ///< usual one

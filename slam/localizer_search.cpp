@@ -18,6 +18,7 @@ constexpr double kSureScanShare = 0.7, kSureDepthShare = 0.8;  // to become OK
 constexpr double kPlausibleScanShare = 0.75;  // to be believed for a moment, unrecognised
 constexpr double kSamePlaceM = 0.7;           // no reason to go elsewhere
 constexpr int kSureScanPoints = 60;
+constexpr int kSureFramesByWalls = 30;
 constexpr double kTellingMargin = 0.04;  // makes up for a scan that shows less
 constexpr double kBetterHeld = 0.03;     // of the local scan: walls in one view alone have misled
 constexpr double kRefutedConfidence = 0.05;
@@ -163,6 +164,7 @@ void Localizer::Impl::adopt(double time_s, const Se3& map_from_base) {
   broken = false;  // before this: the place is judged by what was seen since
   doubt = false;
   contradicted_since_s.reset();
+  unvouched_since_s.reset();
   evidence = {};
   inliers_now = 0;
   last_fix_s = time_s;
@@ -194,6 +196,8 @@ bool Localizer::Impl::is_convincing() const {
     return evidence.depth_share >= kSureDepthShare && evidence.inliers >= kSureTelling &&
            evidence.recognitions >= kSureRecognition && evidence.rival_share <= kMostRival;
   }
+  // Walls alone leave a pose open along them until the rover has seen around a corner or two.
+  if (evidence.inliers < kMinTelling && evidence.agreeing_frames < kSureFramesByWalls) return false;
   const bool clearly_recognized =
       evidence.recognitions >= kSureRecognitions && evidence.rival_share <= kHardlyRivalled;
   const bool enough_seen = evidence.scan_points >= kSureScanPoints ||
