@@ -5,6 +5,34 @@
 
 namespace rovigo::app {
 
+namespace {
+
+/// A drive that the drive side held for good, or that ended for want of a usable pose.
+Outcome held_outcome(control::StopCause cause) {
+  switch (cause) {
+    case control::StopCause::kNone:
+    case control::StopCause::kLostPoses:
+      return {"pose_lost", 104,
+              "stopped: no usable pose for too long; is the map still true to the place?"};
+    case control::StopCause::kNoPoses:
+      return {"pose_lost", 104, "stopped: no poses arrive any more; is the localiser running?"};
+    case control::StopCause::kOldPoses:
+      return {"pose_lost", 104,
+              "stopped: poses are too old when they arrive (control.max_pose_age_s)"};
+    case control::StopCause::kBadPoses:
+      return {"pose_lost", 104, "stopped: the poses that arrive are no finite numbers"};
+    case control::StopCause::kNoSetPoints:
+      return {"no_set_points", 107, "stopped: no set-points come from the controller any more"};
+    case control::StopCause::kLowBattery:
+      return {"battery_low", 106, "stopped: the battery is below robot.battery_low_v; charge it"};
+    case control::StopCause::kManual:
+      return {"manual_takeover", 106, "stopped: taken over by hand and not given back"};
+  }
+  return {"stopped", 106, "stopped by the drive side"};
+}
+
+}  // namespace
+
 Outcome outcome_of(const control::DriveLog& log, const control::DriveMetrics& m) {
   if (log.contact_events > 0) {
     return {"collision", 106,
@@ -16,8 +44,8 @@ Outcome outcome_of(const control::DriveLog& log, const control::DriveMetrics& m)
               "reached the goal, " + with_unit(m.final_position_error_m, 3, "m") + " off, after " +
                   with_unit(m.driven_length_m, 2, "m") + " and " + with_unit(m.duration_s, 1, "s")};
     case control::TrackStatus::kPoseLost:
-      return {"pose_lost", 104,
-              "stopped: no usable pose for too long; is the map still true to the place?"};
+    case control::TrackStatus::kStopped:
+      return held_outcome(log.held);
     case control::TrackStatus::kNoProgress:
       return {"no_progress", 105, "stopped: the rover was commanded to move and did not"};
     case control::TrackStatus::kTimedOut:

@@ -68,12 +68,15 @@ class PerturbedPoses final : public PoseSource {
 
   void observe(const mrpt::obs::CObservation&) override {}
   control::PoseInput pose(double now_s) override {
+    constexpr double kRoundingS = 1e-9;
     // Called at every control step, so a sample falls due at the first step past its time.
-    if (now_s >= next_sample_s_) {
-      next_sample_s_ = now_s + 1.0 / noise_.rate_hz;
-      in_flight_.push_back(sample(now_s));
+    if (now_s + kRoundingS >= next_sample_s_) {
+      const double period_s = 1.0 / noise_.rate_hz;
+      if (now_s - next_sample_s_ > period_s) next_sample_s_ = now_s;  // nobody asked for a while
+      next_sample_s_ += period_s;
+      measure(now_s);
     }
-    while (!in_flight_.empty() && in_flight_.front().arrives_s <= now_s) {
+    while (!in_flight_.empty() && in_flight_.front().arrives_s <= now_s + kRoundingS) {
       last_ = in_flight_.front().pose;
       in_flight_.pop_front();
     }
@@ -85,7 +88,7 @@ class PerturbedPoses final : public PoseSource {
     double arrives_s;
     control::PoseInput pose;
   };
-  Sample sample(double now_s) {
+  void measure(double now_s) {
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     control::PoseInput pose = truth_.pose(now_s);
@@ -94,9 +97,12 @@ class PerturbedPoses final : public PoseSource {
     pose.map_from_base.phi =
         maps::wrap_angle(pose.map_from_base.phi + noise_.sigma_heading_rad * normal(random_));
     pose.sigma_position_m = noise_.sigma_position_m;
-    double arrives = now_s + noise_.latency_s + noise_.jitter_s * uniform(random_);
+    const double age = noise_.latency_s + noise_.jitter_s * (2.0 * uniform(random_) - 1.0);
+    const bool is_lost = uniform(random_) < noise_.drop_share;
+    if (is_lost) return;
+    double arrives = now_s + std::max(age, 0.0);
     if (!in_flight_.empty()) arrives = std::max(arrives, in_flight_.back().arrives_s);  // in order
-    return {arrives, pose};
+    in_flight_.push_back({arrives, pose});
   }
 
   TruePoses truth_;

@@ -64,7 +64,7 @@ class RouteDrive {
         config_(config),
         hooks_(hooks),
         poses_(true_poses(simulator, TPose2D())),
-        loop_(simulator, TPose2D(), *poses_, hooks) {}
+        loop_(simulator, TPose2D(), *poses_, config, hooks) {}
 
   RouteDriveResult run(const TPose2D& start) {
     at_ = start;
@@ -127,7 +127,7 @@ class RouteDrive {
     const double leg_begin_s = simulator_.time_s();
     out_.log.status = control::TrackStatus::kRunning;
     while (out_.log.status == control::TrackStatus::kRunning) {
-      out_.log.steps.push_back(loop_.step(tracker, begin_s_, out_.log.status));
+      loop_.step(tracker, begin_s_, out_.log);
       loop_.advance(out_.log.steps.back().command);
       if (was_taken()) return false;
       drop_passed(targets);

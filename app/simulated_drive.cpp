@@ -61,36 +61,50 @@ TPose2D DriveLoop::true_pose() const {
   return maps::compose(map_from_world_, TPose2D(simulator_.truth().world_from_base.asTPose()));
 }
 
-control::DriveStep DriveLoop::step(control::DriveController& controller, double begin_s,
-                                   control::TrackStatus& status) {
+void DriveLoop::step(control::DriveController& controller, double begin_s, control::DriveLog& log) {
   const double now = simulator_.time_s();
-  const control::PoseInput pose = poses_.pose(now);
-  const control::TrackerOutput out = controller.step(now, pose);
-  status = out.status;
+  const control::PoseInput pose = pose_faults_.pass(simulator_, now, poses_.pose(now));
+  control::GuardInput in;
+  if (!simulator_.fault(sim::FaultKind::kSetPointsStop)) {
+    last_ =
+        control::concerns_drive(guard_.cause()) ? controller.hold(now) : controller.step(now, pose);
+    in.set_point = last_.command;
+  }
+  in.now_s = now;
+  in.pose = pose;
+  in.battery_v = simulator_.battery_v();
+  in.manual = simulator_.fault(sim::FaultKind::kManualTakeover) != nullptr;
+
   control::DriveStep step;
+  step.command = guard_.pass(in);
+  step.held = log.held = guard_.cause();
   step.time_s = now - begin_s;
   step.true_pose = true_pose();
   step.estimated_pose = pose.map_from_base;
   step.quality = pose.quality;
   step.sigma_position_m = pose.sigma_position_m;
-  step.command = out.command;
   step.true_twist = simulator_.truth().twist;
-  step.reference = out.reference;
-  step.heading_error_rad = out.heading_error_rad;
-  step.cross_track_error_m = out.cross_track_error_m;
-  return step;
+  step.reference = last_.reference;
+  step.heading_error_rad = last_.heading_error_rad;
+  step.cross_track_error_m = last_.cross_track_error_m;
+  log.steps.push_back(step);
+  log.status = last_.status;
+  if (log.status == control::TrackStatus::kRunning && guard_.out_of_patience(now)) {
+    log.status = control::TrackStatus::kStopped;
+  }
 }
 
 control::DriveLog drive_in_simulator(sim::Simulator& simulator, const TPose2D& world_from_map,
                                      PoseSource& poses, control::DriveController& controller,
-                                     double planned_duration_s, const DriveHooks& hooks) {
-  DriveLoop loop(simulator, world_from_map, poses, hooks);
+                                     double planned_duration_s, const RovigoConfig& config,
+                                     const DriveHooks& hooks) {
+  DriveLoop loop(simulator, world_from_map, poses, config, hooks);
   control::DriveLog log;
   loop.stand_still(kStandBeforeS);
   const int contacts_before = simulator.truth().contact_events;
   const double begin_s = simulator.time_s();
   while (log.status == control::TrackStatus::kRunning) {
-    log.steps.push_back(loop.step(controller, begin_s, log.status));
+    loop.step(controller, begin_s, log);
     loop.advance(log.steps.back().command);
     if (hooks.progress && planned_duration_s > 0.0) {
       hooks.progress(log.steps.back().time_s / planned_duration_s);

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "app/pose_faults.h"
 #include "app/pose_source.h"
 #include "control/drive_controller.h"
 #include "control/drive_log.h"
@@ -22,22 +23,24 @@ struct DriveHooks {
 inline constexpr double kStandBeforeS = 1.0;  ///< the gyro's bias can be learned
 inline constexpr double kStandAfterS = 0.5;
 
-/// One simulated drive, advanced a command period (1/120 s of simulated time) at a time.
+/// One simulated drive, advanced a command period (1/120 s of simulated time) at a time. Between
+/// controller and simulator stands the drive side's guard; the scenario's faults are played in.
 class DriveLoop {
  public:
-  /// All of them must outlive this.
+  /// Simulator, poses and hooks must outlive this.
   DriveLoop(sim::Simulator& simulator, const TPose2D& world_from_map, PoseSource& poses,
-            const DriveHooks& hooks)
+            const RovigoConfig& config, const DriveHooks& hooks)
       : simulator_(simulator),
         map_from_world_(maps::inverse(world_from_map)),
         poses_(poses),
+        guard_(config.control, config.robot.battery_low_v),
         hooks_(hooks) {}
 
   void advance(const TTwist2D& command);
   void stand_still(double seconds);
-  /// What the controller wants now, as a step of the log whose time counts from `begin_s`.
-  control::DriveStep step(control::DriveController& controller, double begin_s,
-                          control::TrackStatus& status);
+  /// What the motors are to do now, as a step of the log whose time counts from `begin_s`; `log`
+  /// takes the step, and how the drive stands.
+  void step(control::DriveController& controller, double begin_s, control::DriveLog& log);
   /// Where the rover truly is, in the map frame.
   TPose2D true_pose() const;
 
@@ -45,14 +48,19 @@ class DriveLoop {
   sim::Simulator& simulator_;
   TPose2D map_from_world_;
   PoseSource& poses_;
+  PoseFaults pose_faults_;
+  control::DriveGuard guard_;
+  control::TrackerOutput last_;  ///< of the controller, while it was alive
   const DriveHooks& hooks_;
 };
 
 /// Stands still for a second (the gyro's bias can be learned), drives until the controller ends the
-/// drive, stands still for half a second. Control runs at 120 Hz of simulated time.
+/// drive or the drive side has held the rover for too long, stands still for half a second. Control
+/// runs at 120 Hz of simulated time.
 control::DriveLog drive_in_simulator(sim::Simulator& simulator, const TPose2D& world_from_map,
                                      PoseSource& poses, control::DriveController& controller,
-                                     double planned_duration_s, const DriveHooks& hooks);
+                                     double planned_duration_s, const RovigoConfig& config,
+                                     const DriveHooks& hooks);
 
 /// SHA-256, hex, over the steps (index, true pose, estimate, command) as little-endian doubles.
 std::string log_hash(const control::DriveLog& log);

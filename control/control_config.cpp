@@ -105,7 +105,7 @@ void describe_drive(ControlConfig& c, maps::SettingsVisitor& v) {
 
 void describe_trust(ControlConfig& c, maps::SettingsVisitor& v) {
   v.real({.name = "watchdog_s",
-          .help = "The command is zero this long after the last usable pose arrived.",
+          .help = "The command is zero this long after the last usable pose or set-point arrived.",
           .min = 0.02,
           .max = 1.0},
          c.watchdog_s);
@@ -131,10 +131,16 @@ void describe_trust(ControlConfig& c, maps::SettingsVisitor& v) {
           .max = 1.0},
          c.pose_noise_scale_m);
   v.real({.name = "pose_patience_s",
-          .help = "How long to wait, standing, for a usable pose before giving up.",
+          .help = "How long to wait, standing, for a usable pose, a set-point or a better battery "
+                  "before giving up.",
           .min = 0.5,
           .max = 600.0},
          c.pose_patience_s);
+  v.real({.name = "takeover_patience_s",
+          .help = "How long an operator may hold the rover before the drive is given up.",
+          .min = 0.5,
+          .max = 3600.0},
+         c.takeover_patience_s);
 }
 
 void describe_end(ControlConfig& c, maps::SettingsVisitor& v) {

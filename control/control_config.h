@@ -40,6 +40,7 @@ struct ControlConfig {
   double max_doubtful_sigma_m = 0.10;
   double pose_noise_scale_m = 0.01;
   double pose_patience_s = 10.0;
+  double takeover_patience_s = 60.0;
 
   // The end of the drive.
   double goal_tolerance_m = 0.03;

@@ -14,6 +14,8 @@ const char* to_string(TrackStatus status) {
       return "no_progress";
     case TrackStatus::kTimedOut:
       return "timed_out";
+    case TrackStatus::kStopped:
+      return "stopped";
   }
   return "unknown";
 }

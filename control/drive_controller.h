@@ -23,6 +23,7 @@ enum class TrackStatus {
   kPoseLost,    ///< no usable pose for longer than patience allows
   kNoProgress,  ///< stagnated
   kTimedOut,    ///< far behind the trajectory's own duration
+  kStopped,     ///< the drive side held the rover for good (drive_guard.h says why)
 };
 
 const char* to_string(TrackStatus status);
@@ -41,6 +42,9 @@ class DriveController {
   virtual ~DriveController() = default;
   /// The command at `now_s`, given the newest pose (which may be old, doubtful or lost).
   virtual TrackerOutput step(double now_s, const PoseInput& pose) = 0;
+  /// In place of step() while the drive side holds the rover: nothing that is commanded happens.
+  /// The time does not count, and the next step() goes on from standstill.
+  virtual TrackerOutput hold(double now_s) = 0;
 };
 
 }  // namespace rovigo::control

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "control/drive_controller.h"
+#include "control/drive_guard.h"
 
 namespace rovigo::control {
 
@@ -13,9 +14,10 @@ struct DriveStep {
   TPose2D true_pose;       ///< map_from_base; on a real rover, the best reference there is
   TPose2D estimated_pose;  ///< what the tracker was told
   PoseQuality quality = PoseQuality::kLost;
-  double sigma_position_m = 0.0;  ///< 1-sigma, as the estimator states it
-  TTwist2D command;               ///< vx m/s, omega rad/s
-  TTwist2D true_twist;            ///< of base_link, in base_link
+  double sigma_position_m = 0.0;      ///< 1-sigma, as the estimator states it
+  TTwist2D command;                   ///< to the motors, as the drive side lets it pass; m/s, rad/s
+  StopCause held = StopCause::kNone;  ///< why the drive side holds the rover
+  TTwist2D true_twist;                ///< of base_link, in base_link
   planning::TrajectoryPoint reference;
   double heading_error_rad = 0.0;    ///< as the tracker saw it
   double cross_track_error_m = 0.0;  ///< as the tracker saw it; left of the path positive
@@ -25,6 +27,7 @@ struct DriveLog {
   std::vector<DriveStep> steps;
   int contact_events = 0;
   TrackStatus status = TrackStatus::kRunning;
+  StopCause held = StopCause::kNone;  ///< at the end
 };
 
 }  // namespace rovigo::control

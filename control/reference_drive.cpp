@@ -53,10 +53,7 @@ ReferenceDrive::ReferenceDrive(const ReferenceConfig& config,
 
 TrackerOutput ReferenceDrive::step(double now_s, const PoseInput& pose) {
   if (last_.status != TrackStatus::kRunning) return last_;
-  if (!started_) {
-    started_ = true;
-    start_s_ = next_step_s_ = now_s;
-  }
+  pass_time(now_s);
   if (now_s - start_s_ > time_limit_s_) {
     last_.status = TrackStatus::kTimedOut;
     last_.command = {};
@@ -71,6 +68,23 @@ TrackerOutput ReferenceDrive::step(double now_s, const PoseInput& pose) {
   last_.reference = waypoints_[std::min(out.waypoint, waypoints_.size() - 1)];
   if (out.finished) last_.status = TrackStatus::kReached;
   return last_;
+}
+
+TrackerOutput ReferenceDrive::hold(double now_s) {
+  const double before_s = last_s_;
+  pass_time(now_s);
+  start_s_ += last_s_ - std::min(before_s, last_s_);
+  next_step_s_ = now_s;
+  last_.command = {};
+  return last_;
+}
+
+void ReferenceDrive::pass_time(double now_s) {
+  if (!started_) {
+    started_ = true;
+    start_s_ = next_step_s_ = now_s;
+  }
+  last_s_ = now_s;
 }
 
 }  // namespace rovigo::control

@@ -18,16 +18,20 @@ class ReferenceDrive final : public DriveController {
                  double time_limit_s);
 
   TrackerOutput step(double now_s, const PoseInput& pose) override;
+  TrackerOutput hold(double now_s) override;
 
  private:
   ReferenceDrive(const ReferenceConfig& config, std::vector<planning::TrajectoryPoint> waypoints,
                  double time_limit_s);
+
+  void pass_time(double now_s);
 
   std::vector<planning::TrajectoryPoint> waypoints_;
   ReferenceController law_;
   double time_limit_s_;
   bool started_ = false;
   double start_s_ = 0.0;
+  double last_s_ = 0.0;
   double next_step_s_ = 0.0;
   TrackerOutput last_;
 };

@@ -7,6 +7,7 @@
 #include "control/command_limiter.h"
 #include "control/path_follower.h"
 #include "control/pose_predictor.h"
+#include "control/pose_use.h"
 #include "control/progress_monitor.h"
 #include "control/turn_gain.h"
 #include "control/watchdog.h"
@@ -20,12 +21,6 @@ constexpr double kStandstillS = 0.3;  ///< at rest this long before "reached" is
 constexpr double kStandingRimSpeedMS = 0.01;
 constexpr int kMostApproaches = 3;          ///< second tries at a missed goal
 constexpr double kLongestApproachM = 0.30;  ///< a goal missed by more needs a new plan
-
-enum class PoseUse {
-  kDrive,   ///< steer by it
-  kStop,    ///< it says that nobody knows where the rover is
-  kIgnore,  ///< as if it had not come: old, repeated, not finite
-};
 
 DriveModel drive_model(const ControlConfig& config, const maps::RobotModel& robot) {
   return {config.drive_lag_s, config.command_delay_s, config.dead_zone_speed_m_s,
@@ -52,8 +47,9 @@ struct TrajectoryTracker::Impl {
         monitor(config_in.stagnation_time_s) {}
 
   TrackerOutput step(double now_s, const PoseInput& pose);
+  TrackerOutput hold(double now_s);
 
-  PoseUse judge(double now_s, const PoseInput& pose) const;
+  double pass_time(double now_s);
   void take_pose(double now_s, const PoseInput& pose);
   void correct_estimate(const PoseInput& pose);
   TTwist2D follow(double now_s, double dt_s);
@@ -90,12 +86,7 @@ struct TrajectoryTracker::Impl {
 
 TrackerOutput TrajectoryTracker::Impl::step(double now_s, const PoseInput& pose) {
   if (status != TrackStatus::kRunning || !std::isfinite(now_s)) return emit({});
-  if (!started) {
-    started = true;
-    start_s = now_last_s = last_usable_s = now_s;
-  }
-  const double dt = now_s - now_last_s;
-  now_last_s = std::max(now_s, now_last_s);
+  const double dt = pass_time(now_s);
   predictor.advance(now_s);
   take_pose(now_s, pose);
   watch_time(now_s);
@@ -110,26 +101,38 @@ TrackerOutput TrajectoryTracker::Impl::step(double now_s, const PoseInput& pose)
   return emit(limited_command(wanted, last_command, dt, limits));
 }
 
-PoseUse TrajectoryTracker::Impl::judge(double now_s, const PoseInput& pose) const {
-  constexpr double kClockSlackS = 0.05;  // poses may be stamped at the end of the present step
-  const double age = now_s - pose.time_s;
-  if (!maps::is_finite(pose.map_from_base) || !(age <= config.max_pose_age_s) ||
-      !(age >= -kClockSlackS)) {
-    return PoseUse::kIgnore;
+TrackerOutput TrajectoryTracker::Impl::hold(double now_s) {
+  if (status != TrackStatus::kRunning || !std::isfinite(now_s)) return emit({});
+  const double held_s = std::max(0.0, pass_time(now_s));
+  start_s += held_s;
+  last_usable_s += held_s;
+  predictor.set_command({});  // whatever was commanded last did not happen
+  predictor.advance(now_s);
+  halted = true;
+  standing_since_s = -1.0;
+  monitor.restart();
+  turn_gain.interrupt();
+  return emit({});
+}
+
+/// Seconds since the last call.
+double TrajectoryTracker::Impl::pass_time(double now_s) {
+  if (!started) {
+    started = true;
+    start_s = now_last_s = last_usable_s = now_s;
   }
-  if (have_pose && pose.time_s <= newest_pose_s) return PoseUse::kIgnore;
-  if (pose.quality == PoseQuality::kGood) return PoseUse::kDrive;
-  const bool good_enough = pose.quality == PoseQuality::kDoubtful &&
-                           pose.sigma_position_m <= config.max_doubtful_sigma_m;
-  return good_enough ? PoseUse::kDrive : PoseUse::kStop;
+  const double dt = now_s - now_last_s;
+  now_last_s = std::max(now_s, now_last_s);
+  return dt;
 }
 
 void TrajectoryTracker::Impl::take_pose(double now_s, const PoseInput& pose) {
-  const PoseUse use = judge(now_s, pose);
-  if (use == PoseUse::kIgnore) return;
+  const PoseUse use = judge_pose(config, now_s, pose);
+  const bool repeated = have_pose && pose.time_s <= newest_pose_s;
+  if (use == PoseUse::kNotFinite || use == PoseUse::kTooOld || repeated) return;
   have_pose = true;
   newest_pose_s = pose.time_s;
-  if (use == PoseUse::kStop) {
+  if (use == PoseUse::kLost) {
     halted = true;
     monitor.restart();
     turn_gain.interrupt();
@@ -242,5 +245,7 @@ TrajectoryTracker::~TrajectoryTracker() = default;
 TrackerOutput TrajectoryTracker::step(double now_s, const PoseInput& pose) {
   return impl_->step(now_s, pose);
 }
+
+TrackerOutput TrajectoryTracker::hold(double now_s) { return impl_->hold(now_s); }
 
 }  // namespace rovigo::control

@@ -19,6 +19,7 @@ class TrajectoryTracker final : public DriveController {
 
   /// The command at `now_s`, given the newest pose (which may be old, doubtful or lost).
   TrackerOutput step(double now_s, const PoseInput& pose) override;
+  TrackerOutput hold(double now_s) override;
 
  private:
   struct Impl;

@@ -3,13 +3,9 @@
 #include <cmath>
 
 namespace rovigo::sim {
-namespace {
 
-constexpr double kGravity = 9.81;
-
-}  // namespace
-
-ImuSensor::ImuSensor(const ImuNoise& noise, std::uint64_t seed) : noise_(noise), random_(seed) {
+ImuSensor::ImuSensor(const ImuNoise& noise, const Eigen::Vector3d& gravity, std::uint64_t seed)
+    : noise_(noise), gravity_(gravity), random_(seed) {
   for (int i = 0; i < 3; ++i) {
     gyro_bias_[i] = random_.uniform(-1.0, 1.0) * noise.gyro_bias_max_rad_s;
     accelerometer_bias_[i] = random_.uniform(-1.0, 1.0) * noise.accelerometer_bias_max_m_s2;
@@ -25,7 +21,7 @@ mrpt::obs::CObservationIMU::Ptr ImuSensor::sample(const BodyState& state, double
   const Eigen::Matrix3d base_from_world = state.world_from_base.linear().transpose();
   const Eigen::Vector3d acceleration = (state.velocity - previous_velocity_) / interval_s;
   previous_velocity_ = state.velocity;
-  Eigen::Vector3d force = base_from_world * (acceleration + Eigen::Vector3d(0, 0, kGravity));
+  Eigen::Vector3d force = base_from_world * (acceleration - gravity_);
   Eigen::Vector3d rate = base_from_world * state.angular_velocity;
   if (summed_steps_ > 0) rate = summed_rate_ / summed_steps_;
   summed_rate_.setZero();

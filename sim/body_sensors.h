@@ -16,7 +16,7 @@ namespace rovigo::sim {
 /// Sits in base_link. Biases are drawn once by seed; the gyro's walks slowly.
 class ImuSensor {
  public:
-  ImuSensor(const ImuNoise& noise, std::uint64_t seed);
+  ImuSensor(const ImuNoise& noise, const Eigen::Vector3d& gravity, std::uint64_t seed);
 
   /// The body's motion after each physics step.
   void advance(const BodyState& state);
@@ -30,6 +30,7 @@ class ImuSensor {
 
  private:
   ImuNoise noise_;
+  Eigen::Vector3d gravity_;  ///< in the world's frame, m/s^2
   RandomStream random_;
   Eigen::Vector3d gyro_bias_;
   Eigen::Vector3d accelerometer_bias_;

@@ -22,48 +22,49 @@ DriveTrain::DriveTrain(const MotorModel& motor, const WheelNoise& wheels,
   update_slip(0.0);
 }
 
-DriveTrain::Output DriveTrain::step(double time_s, double dt_s, const TTwist2D& command,
-                                    double left_speed_rad_s, double right_speed_rad_s) {
-  delayed_.emplace_back(time_s + motor_.command_latency_s, command);
-  while (delayed_.size() > 1 && delayed_[1].first <= time_s) delayed_.erase(delayed_.begin());
-  TTwist2D twist;
-  if (delayed_.front().first <= time_s) twist = delayed_.front().second;
-  if (!std::isfinite(twist.vx) || !std::isfinite(twist.omega)) twist = {};
-
-  update_slip(time_s);
-  const bool slipping = time_s < slip_end_s_;
+DriveTrain::Output DriveTrain::step(const Input& in) {
+  update_slip(in.time_s);
+  const bool slipping = in.time_s < slip_end_s_;
   Output out;
   out.left_grip = slipping && slip_on_left_ ? slip_grip_ : 1.0;
   out.right_grip = slipping && !slip_on_left_ ? slip_grip_ : 1.0;
-  const double half_turn = 0.5 * twist.omega * robot_.track_width_m;
-  out.left = drive_side(twist.vx - half_turn, left_speed_rad_s, out.left_grip, dt_s, left_loop_);
+  const double half_turn = 0.5 * in.command.omega * robot_.track_width_m;
+  out.left =
+      drive_side(in, in.command.vx - half_turn, in.left_speed_rad_s, out.left_grip, left_loop_);
   out.right =
-      drive_side(twist.vx + half_turn, right_speed_rad_s, out.right_grip, dt_s, right_loop_);
+      drive_side(in, in.command.vx + half_turn, in.right_speed_rad_s, out.right_grip, right_loop_);
   return out;
 }
 
-SideDrive DriveTrain::drive_side(double target_m_s, double measured_rad_s, double grip, double dt_s,
-                                 SpeedLoop& loop) const {
-  const double limit = motor_.no_load_speed_m_s;
+SideDrive DriveTrain::drive_side(const Input& in, double target_m_s, double measured_rad_s,
+                                 double grip, SpeedLoop& loop) const {
+  const double limit = robot_.motor_no_load_speed_m_s;
   double target = std::clamp(target_m_s, -limit, limit);
   const bool moving = std::abs(measured_rad_s) > kMovingRad_s;
   const double threshold = motor_.dead_zone_m_s * (moving ? kKeepMovingShare : 1.0);
   if (std::abs(target) < threshold) target = 0.0;
   loop.wanted_m_s +=
-      (target - loop.wanted_m_s) * std::min(1.0, dt_s / std::max(motor_.lag_s, dt_s));
+      (target - loop.wanted_m_s) * std::min(1.0, in.dt_s / std::max(motor_.lag_s, in.dt_s));
   const double measured_m_s = measured_rad_s * robot_.wheel_radius_m;
   const double error = grip * loop.wanted_m_s - measured_m_s;
-  loop.trim_m_s = target == 0.0 ? 0.0
-                                : std::clamp(loop.trim_m_s + kTrimRate_1_s * error * dt_s,
-                                             -kMaxTrim_m_s, kMaxTrim_m_s);
+  // At rest the integral holds the place; on the way to rest it has nothing to take out.
+  const bool stopping = target == 0.0 && moving;
+  loop.trim_m_s = stopping ? 0.0
+                           : std::clamp(loop.trim_m_s + kTrimRate_1_s * error * in.dt_s,
+                                        -kMaxTrim_m_s, kMaxTrim_m_s);
   SideDrive drive;
   drive.speed_rad_s = (grip * loop.wanted_m_s + loop.trim_m_s) / robot_.wheel_radius_m;
-  // A DC motor's torque falls linearly from stall to the no-load speed; braking it has all of it.
-  const double rim_m_s = std::abs(measured_m_s);
-  const bool accelerating = std::abs(drive.speed_rad_s) > std::abs(measured_rad_s);
-  const double share = accelerating ? std::clamp(1.0 - rim_m_s / limit, 0.0, 1.0) : 1.0;
-  drive.torque_limit_nm = motor_.stall_torque_nm * share;
+  const bool driving = std::abs(drive.speed_rad_s) > std::abs(measured_rad_s);
+  drive.torque_limit_nm = motor_torque_nm(std::abs(measured_m_s), driving, in.voltage_share);
+  drive.friction_nm = motor_.friction_nm;
   return drive;
+}
+
+/// The most it can do. A DC motor's torque falls linearly from stall to the no-load speed, and its
+/// voltage moves that line in parallel; braking it has all of its stall torque.
+double DriveTrain::motor_torque_nm(double rim_m_s, bool driving, double voltage_share) const {
+  const double lost = driving ? rim_m_s / robot_.motor_no_load_speed_m_s : 0.0;
+  return robot_.motor_stall_torque_nm * std::max(0.0, voltage_share - lost);
 }
 
 /// Slips come as a Poisson process; each takes one side, drawn anew.

@@ -1,5 +1,5 @@
 #pragma once
-// From a commanded twist to the wheels: mixing, wheel speed loop, motor limits, stiction, slip.
+// From a commanded twist to the wheels: mixing, wheel speed loop, motor limits, friction, slip.
 
 #include "maps/geometry.h"
 #include "maps/robot_model.h"
@@ -21,9 +21,15 @@ class DriveTrain {
     double right_grip = 1.0;
   };
 
-  /// `command` at `time_s`; the wheels' measured speeds are those after the last step.
-  Output step(double time_s, double dt_s, const TTwist2D& command, double left_speed_rad_s,
-              double right_speed_rad_s);
+  struct Input {
+    double time_s = 0.0;
+    double dt_s = 0.0;
+    TTwist2D command;               ///< finite
+    double voltage_share = 1.0;     ///< of the battery's nominal voltage
+    double left_speed_rad_s = 0.0;  ///< of the wheels, after the last step
+    double right_speed_rad_s = 0.0;
+  };
+  Output step(const Input& in);
 
  private:
   /// The speed loop of one side's wheels.
@@ -31,8 +37,9 @@ class DriveTrain {
     double wanted_m_s = 0.0;  ///< the target behind its first-order lag
     double trim_m_s = 0.0;    ///< integral action
   };
-  SideDrive drive_side(double target_m_s, double measured_rad_s, double grip, double dt_s,
+  SideDrive drive_side(const Input& in, double target_m_s, double measured_rad_s, double grip,
                        SpeedLoop& loop) const;
+  double motor_torque_nm(double rim_m_s, bool driving, double voltage_share) const;
   void update_slip(double time_s);
 
   MotorModel motor_;
@@ -45,7 +52,6 @@ class DriveTrain {
   double slip_end_s_ = 0.0;
   double slip_grip_ = 1.0;
   bool slip_on_left_ = false;
-  std::vector<std::pair<double, TTwist2D>> delayed_;
 };
 
 }  // namespace rovigo::sim

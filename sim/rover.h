@@ -9,6 +9,7 @@
 
 #include "maps/geometry.h"
 #include "maps/robot_model.h"
+#include "sim/footing.h"
 #include "sim/world_model.h"
 
 namespace rovigo::sim {
@@ -17,6 +18,7 @@ namespace rovigo::sim {
 struct SideDrive {
   double speed_rad_s = 0.0;
   double torque_limit_nm = 0.0;  ///< of each of the side's two motors
+  double friction_nm = 0.0;      ///< of each of its two wheels' gears and bearings
 };
 
 /// Where base_link is and how it moves; velocities in the world frame.
@@ -28,7 +30,8 @@ struct BodyState {
 
 class RoverBody {
  public:
-  RoverBody(const WorldModel& world, const maps::RobotModel& robot, const TPose2D& world_from_base);
+  RoverBody(const WorldModel& world, const maps::RobotModel& robot, const TPose2D& world_from_base,
+            const Footing& footing = {});
   ~RoverBody();
 
   void step(double dt_s, const SideDrive& left, const SideDrive& right);

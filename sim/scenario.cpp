@@ -139,16 +139,6 @@ void WheelNoise::describe(maps::SettingsVisitor& v) {
 }
 
 void MotorModel::describe(maps::SettingsVisitor& v) {
-  v.real({.name = "no_load_speed_m_s",
-          .help = "Speed at the rim that no torque is left at.",
-          .min = 0.1,
-          .max = 10},
-         no_load_speed_m_s);
-  v.real({.name = "stall_torque_nm",
-          .help = "Torque of each of the four motors at rest.",
-          .min = 0.01,
-          .max = 50},
-         stall_torque_nm);
   v.real({.name = "lag_s", .help = "Time constant of the wheel speed loop.", .min = 0, .max = 1},
          lag_s);
   v.real({.name = "dead_zone_m_s",
@@ -156,9 +146,62 @@ void MotorModel::describe(maps::SettingsVisitor& v) {
           .min = 0,
           .max = 0.5},
          dead_zone_m_s);
+  v.real({.name = "friction_nm",
+          .help = "Friction of each wheel's bearings and gears.",
+          .min = 0,
+          .max = 10},
+         friction_nm);
+  v.real({.name = "voltage_share",
+          .help = "Battery voltage as a share of the nominal one; scales the motors' speed and "
+                  "torque.",
+          .min = 0,
+          .max = 1.2},
+         voltage_share);
+}
+
+void CommandLinkModel::describe(maps::SettingsVisitor& v) {
+  v.real({.name = "rate_hz", .help = "Commands a second.", .min = 2, .max = 240}, rate_hz);
   v.real(
-      {.name = "command_latency_s", .help = "Time a command takes to arrive.", .min = 0, .max = 2},
-      command_latency_s);
+      {.name = "latency_s", .help = "Mean age of a command when it arrives.", .min = 0, .max = 2},
+      latency_s);
+  v.real({.name = "jitter_s", .help = "The age varies uniformly by +- this.", .min = 0, .max = 1},
+         jitter_s);
+  v.real(
+      {.name = "drop_share", .help = "Share of the commands that is lost.", .min = 0, .max = 0.95},
+      drop_share);
+}
+
+void Payload::describe(maps::SettingsVisitor& v) {
+  v.real({.name = "mass_kg", .help = "What the rover carries.", .min = 0, .max = 50}, mass_kg);
+  v.real(
+      {.name = "forward_m", .help = "Where it lies, ahead of the middle.", .min = -0.5, .max = 0.5},
+      forward_m);
+  v.real({.name = "left_m", .help = "Where it lies, left of the middle.", .min = -0.5, .max = 0.5},
+         left_m);
+  v.real({.name = "up_m", .help = "Where it lies, above the floor.", .min = 0, .max = 1}, up_m);
+}
+
+void Slope::describe(maps::SettingsVisitor& v) {
+  v.real({.name = "angle_deg", .help = "How steep the floor is.", .min = 0, .max = 10}, angle_deg);
+  v.real({.name = "uphill_deg",
+          .help = "Where it rises, from the world's x axis, counter-clockwise.",
+          .min = -360,
+          .max = 360},
+         uphill_deg);
+}
+
+void FloorGrip::describe(maps::SettingsVisitor& v) {
+  v.real({.name = "slippery_share",
+          .help = "Share of the floor that is slippery.",
+          .min = 0,
+          .max = 1},
+         slippery_share);
+  v.real({.name = "patch_m", .help = "Side of a slippery patch.", .min = 0.05, .max = 10}, patch_m);
+  v.real({.name = "slippery_grip",
+          .help = "Share of the tyres' friction that is left there.",
+          .min = 0.01,
+          .max = 1},
+         slippery_grip);
 }
 
 void PoseNoise::describe(maps::SettingsVisitor& v) {
@@ -171,6 +214,8 @@ void PoseNoise::describe(maps::SettingsVisitor& v) {
          latency_s);
   v.real({.name = "jitter_s", .help = "The age varies uniformly by +- this.", .min = 0, .max = 1},
          jitter_s);
+  v.real({.name = "drop_share", .help = "Share of the poses that is lost.", .min = 0, .max = 0.95},
+         drop_share);
 }
 
 void LightStep::describe(maps::SettingsVisitor& v) {
@@ -215,6 +260,31 @@ void Kidnap::describe(maps::SettingsVisitor& v) {
          where);
 }
 
+void Fault::describe(maps::SettingsVisitor& v) {
+  v.text({.name = "kind",
+          .help = "What breaks.",
+          .choices = {"poses_stall", "poses_late", "poses_not_finite", "set_points_stop",
+                      "battery_low", "manual_takeover"}},
+         kind);
+  v.real({.name = "start_s", .help = "When it begins.", .min = 0, .max = kForGood}, start_s);
+  v.real({.name = "within_s",
+          .help = "It begins up to this later, at a moment drawn by the seed.",
+          .min = 0,
+          .max = kForGood},
+         within_s);
+  v.real({.name = "duration_s",
+          .help = "How long it lasts; left out: for good.",
+          .min = 0,
+          .max = kForGood},
+         duration_s);
+  v.real({.name = "delay_s", .help = "poses_late: by how much.", .min = 0, .max = 10}, delay_s);
+  v.real({.name = "voltage_share",
+          .help = "battery_low: voltage as a share of the nominal one.",
+          .min = 0,
+          .max = 1},
+         voltage_share);
+}
+
 namespace {
 
 constexpr std::size_t kMaxEvents = 1000;
@@ -249,9 +319,10 @@ void require_ordered(const std::string& file, const YAML::Node& root, const char
 
 Scenario parse_scenario(const std::string& yaml, const std::string& file) {
   const YAML::Node root = parse_yaml(yaml, file);
-  require_known_keys(file, root,
-                     {"name", "camera", "floor", "people", "imu", "wheels", "motor", "pose",
-                      "light_steps", "blackouts", "kidnaps"});
+  require_known_keys(
+      file, root,
+      {"name", "camera", "floor", "people", "imu", "wheels", "motor", "commands", "payload",
+       "slope", "grip", "pose", "light_steps", "blackouts", "kidnaps", "faults"});
   Scenario s;
   s.name = std::filesystem::path(file).stem().string();
   if (const YAML::Node name = root["name"]) {
@@ -264,10 +335,15 @@ Scenario parse_scenario(const std::string& yaml, const std::string& file) {
   read_section(file, root, "imu", s.imu);
   read_section(file, root, "wheels", s.wheels);
   read_section(file, root, "motor", s.motor);
+  read_section(file, root, "commands", s.commands);
+  read_section(file, root, "payload", s.payload);
+  read_section(file, root, "slope", s.slope);
+  read_section(file, root, "grip", s.grip);
   read_section(file, root, "pose", s.pose);
   read_events(file, root, "light_steps", s.light_steps);
   read_events(file, root, "blackouts", s.blackouts);
   read_events(file, root, "kidnaps", s.kidnaps);
+  read_events(file, root, "faults", s.faults);
   require_ordered(file, root, "camera", "min_range_m", s.camera.min_range_m, "max_range_m",
                   s.camera.max_range_m);
   require_ordered(file, root, "people", "min_speed_m_s", s.people.min_speed_m_s, "max_speed_m_s",

@@ -67,12 +67,45 @@ struct WheelNoise {
   void describe(maps::SettingsVisitor& v);
 };
 
+/// How the motors, whose speed and torque are the robot's (maps::RobotModel), are driven.
 struct MotorModel {
-  double no_load_speed_m_s = 1.0;  ///< at the rim
-  double stall_torque_nm = 2.0;    ///< of each of the four motors
-  double lag_s = 0.04;             ///< first-order lag of the wheel speed loop
-  double dead_zone_m_s = 0.04;     ///< a wheel at rest needs more than this to start
-  double command_latency_s = 0.0;
+  double lag_s = 0.04;          ///< first-order lag of the wheel speed loop
+  double dead_zone_m_s = 0.04;  ///< a wheel at rest needs more than this to start
+  double friction_nm = 0.05;    ///< of each wheel's bearings and gears
+  double voltage_share = 1.0;   ///< of the battery's nominal voltage: scales speed and torque
+  void describe(maps::SettingsVisitor& v);
+};
+
+/// The way of commands to the motors, as packets.
+struct CommandLinkModel {
+  double rate_hz = 120.0;
+  double latency_s = 0.0;   ///< mean age of a command when it arrives
+  double jitter_s = 0.0;    ///< the age varies uniformly by +- this
+  double drop_share = 0.0;  ///< of the packets, lost; the motors hold the last one that came
+  void describe(maps::SettingsVisitor& v);
+};
+
+/// What the rover carries, as a point mass.
+struct Payload {
+  double mass_kg = 0.0;
+  double forward_m = 0.0;  ///< of base_link
+  double left_m = 0.0;
+  double up_m = 0.25;  ///< above the floor
+  void describe(maps::SettingsVisitor& v);
+};
+
+/// The whole floor as one inclined plane.
+struct Slope {
+  double angle_deg = 0.0;
+  double uphill_deg = 0.0;  ///< direction in the world, from its x axis
+  void describe(maps::SettingsVisitor& v);
+};
+
+/// Slippery patches of the floor, placed by the seed.
+struct FloorGrip {
+  double slippery_share = 0.0;  ///< of the floor
+  double patch_m = 0.4;         ///< side of a patch
+  double slippery_grip = 0.4;   ///< share of the tyres' friction that is left there
   void describe(maps::SettingsVisitor& v);
 };
 
@@ -83,6 +116,7 @@ struct PoseNoise {
   double sigma_heading_rad = 0.01;
   double latency_s = 0.05;
   double jitter_s = 0.01;
+  double drop_share = 0.0;  ///< of the poses, lost
   void describe(maps::SettingsVisitor& v);
 };
 
@@ -118,6 +152,22 @@ struct Kidnap {
   void describe(maps::SettingsVisitor& v);
 };
 
+/// Something breaks in the closed loop for a while. The simulator applies what concerns the rover,
+/// app what concerns poses and commands.
+struct Fault {
+  /// "poses_stall": none arrives. "poses_late": they arrive `delay_s` later. "poses_not_finite":
+  /// they are no numbers. "set_points_stop": the controller is dead. "battery_low": the voltage
+  /// falls to `voltage_share` of the nominal one. "manual_takeover": an operator takes the rover.
+  std::string kind = "poses_stall";
+  double start_s = 0.0;
+  double within_s = 0.0;  ///< it begins at a moment up to this later, drawn by the seed
+  double duration_s = kForGood;
+  double delay_s = 2.0;
+  double voltage_share = 0.8;
+  static constexpr double kForGood = 1e5;
+  void describe(maps::SettingsVisitor& v);
+};
+
 /// Times are seconds since the recording's first moment.
 struct Scenario {
   std::string name = "default";
@@ -127,10 +177,15 @@ struct Scenario {
   ImuNoise imu;
   WheelNoise wheels;
   MotorModel motor;
+  CommandLinkModel commands;
+  Payload payload;
+  Slope slope;
+  FloorGrip grip;
   PoseNoise pose;
   std::vector<LightStep> light_steps;
   std::vector<Blackout> blackouts;
   std::vector<Kidnap> kidnaps;
+  std::vector<Fault> faults;
 };
 
 /// Throws InputError naming file, line, key, value and limit.

@@ -7,6 +7,7 @@
 
 #include "maps/error.h"
 #include "sim/body_sensors.h"
+#include "sim/command_link.h"
 #include "sim/depth_camera.h"
 #include "sim/drive_train.h"
 #include "sim/kidnapping.h"
@@ -29,7 +30,10 @@ enum Stream : std::uint64_t {
   kWheelStream,
   kSlipStream,
   kCameraStream,
-  kPeopleStream
+  kPeopleStream,
+  kCommandStream,
+  kGripStream,
+  kFaultStream
 };
 
 mrpt::poses::CPose3D to_mrpt(const Eigen::Isometry3d& m) {
@@ -60,6 +64,17 @@ const SimulatorOptions& checked(const SimulatorOptions& options) {
   }
   if (!maps::is_finite(options.world_from_base)) {
     throw maps::InputError("the rover's start pose is not finite");
+  }
+  const maps::RobotModel& robot = options.robot;
+  if (!(robot.mass_kg > 4.0 * robot.wheel_mass_kg)) {
+    throw maps::InputError("robot.mass_kg = " + std::to_string(robot.mass_kg) +
+                           " must exceed the mass of four wheels, " +
+                           std::to_string(4.0 * robot.wheel_mass_kg));
+  }
+  if (!(robot.body_height_m > robot.ground_clearance_m)) {
+    throw maps::InputError(
+        "robot.ground_clearance_m = " + std::to_string(robot.ground_clearance_m) +
+        " must be below robot.body_height_m = " + std::to_string(robot.body_height_m));
   }
   return options;
 }
@@ -105,9 +120,13 @@ struct Simulator::Impl {
       : world(w),
         options(checked(o)),
         rig(make_rig()),
-        body(w.model(), o.robot, o.world_from_base),
+        body(w.model(), o.robot, o.world_from_base,
+             {o.scenario.payload, o.scenario.slope, o.scenario.grip,
+              derive_seed(o.seed, kGripStream)}),
+        faults(o.scenario.faults, derive_seed(o.seed, kFaultStream)),
+        link(o.scenario.commands, derive_seed(o.seed, kCommandStream)),
         drive(o.scenario.motor, o.scenario.wheels, o.robot, derive_seed(o.seed, kSlipStream)),
-        imu(o.scenario.imu, derive_seed(o.seed, kImuStream)),
+        imu(o.scenario.imu, gravity_on(o.scenario.slope), derive_seed(o.seed, kImuStream)),
         wheels(o.scenario.wheels, o.robot, derive_seed(o.seed, kWheelStream)),
         imu_timer(o.scenario.imu.rate_hz),
         wheel_timer(o.scenario.wheels.rate_hz),
@@ -117,7 +136,7 @@ struct Simulator::Impl {
                                              options.scenario.floor, rig.camera,
                                              derive_seed(options.seed, kCameraStream));
     }
-    const SideDrive hold{0.0, options.scenario.motor.stall_torque_nm};
+    const SideDrive hold{0.0, options.robot.motor_stall_torque_nm};
     for (int i = 0; i < kSettleSteps; ++i) {
       body.step(kStepS, hold, hold);
       if (const std::string thing = body.touched(); !thing.empty()) {
@@ -147,10 +166,14 @@ struct Simulator::Impl {
   double elapsed_s() const { return static_cast<double>(step_index) * kStepS; }
 
   void step(const TTwist2D& command) {
+    const TTwist2D received = link.pass(elapsed_s(), command);
     if (ride) {
-      drive.step(elapsed_s(), kStepS, TTwist2D(), 0.0, 0.0);  // the motors are let go
+      DriveTrain::Input idle;  // the motors are let go
+      idle.time_s = elapsed_s();
+      idle.dt_s = kStepS;
+      drive.step(idle);
     } else {
-      move(command);
+      move(received);
     }
     ++step_index;
     follow_kidnaps();
@@ -161,11 +184,20 @@ struct Simulator::Impl {
   }
 
   void move(const TTwist2D& command) {
-    const auto out =
-        drive.step(elapsed_s(), kStepS, command, body.left_speed_rad_s(), body.right_speed_rad_s());
+    const auto out = drive.step({.time_s = elapsed_s(),
+                                 .dt_s = kStepS,
+                                 .command = command,
+                                 .voltage_share = voltage_share(),
+                                 .left_speed_rad_s = body.left_speed_rad_s(),
+                                 .right_speed_rad_s = body.right_speed_rad_s()});
     body.step(kStepS, out.left, out.right);
     wheels.advance(body.left_speed_rad_s() * kStepS / out.left_grip,
                    body.right_speed_rad_s() * kStepS / out.right_grip);
+  }
+
+  double voltage_share() const {
+    const Fault* low = faults.active(FaultKind::kBatteryLow, elapsed_s());
+    return low ? low->voltage_share : options.scenario.motor.voltage_share;
   }
 
   bool is_switched_off() const { return ride && ride->kind() == "switched_off"; }
@@ -267,6 +299,8 @@ struct Simulator::Impl {
   SimulatorOptions options;
   SensorRig rig;
   RoverBody body;
+  FaultScript faults;
+  CommandLink link;
   DriveTrain drive;
   ImuSensor imu;
   WheelSensor wheels;
@@ -291,6 +325,12 @@ Simulator::~Simulator() = default;
 
 void Simulator::step(const TTwist2D& command) { impl_->step(command); }
 double Simulator::time_s() const { return impl_->time_s(); }
+double Simulator::battery_v() const {
+  return impl_->voltage_share() * impl_->options.robot.battery_nominal_v;
+}
+const Fault* Simulator::fault(FaultKind kind) const {
+  return impl_->faults.active(kind, impl_->elapsed_s());
+}
 const Truth& Simulator::truth() const { return impl_->truth; }
 const SensorRig& Simulator::rig() const { return impl_->rig; }
 

@@ -11,6 +11,7 @@
 
 #include "maps/occupancy_grid.h"
 #include "maps/robot_model.h"
+#include "sim/fault_script.h"
 #include "sim/scenario.h"
 #include "sim/world.h"
 
@@ -59,6 +60,12 @@ class Simulator {
   /// (label "camera"), CObservationIMU ("imu"), CObservationOdometry ("wheels"). They carry only
   /// what the rover's sensors would see.
   std::vector<mrpt::obs::CObservation::Ptr> take_observations();
+
+  /// What the rover's voltmeter reads.
+  double battery_v() const;
+  /// The scripted fault of this kind that rules now, or none. The simulator itself applies
+  /// kBatteryLow; whoever closes the loop applies the others.
+  const Fault* fault(FaultKind kind) const;
 
   const Truth& truth() const;
   const SensorRig& rig() const;

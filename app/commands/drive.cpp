@@ -122,7 +122,7 @@ int run_drive(const DriveOptions& options) {
     Progress progress("driving");
     log = drive_in_simulator(
         simulator, ground.world_from_map, *poses, tracker, plan.result.trajectory.duration_s(),
-        {.progress = [&](double share) { progress.update(share); }, .observation = {}});
+        config, {.progress = [&](double share) { progress.update(share); }, .observation = {}});
   }
   const control::CommandLimits limits{config.robot.max_speed_m_s, config.robot.max_yaw_rate_rad_s};
   const control::DriveMetrics metrics = control::measure(log, plan.result.trajectory, request.goal,

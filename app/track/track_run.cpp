@@ -44,6 +44,12 @@ TrackBench::TrackBench(TrackSuite suite, const RovigoConfig& config,
   }
 }
 
+TrackBench TrackBench::with_control(const control::ControlConfig& control) const {
+  TrackBench bench = *this;
+  bench.config_.control = control;
+  return bench;
+}
+
 RovigoConfig TrackBench::config_at(double speed_m_s) const {
   RovigoConfig config = config_;
   config.robot.max_speed_m_s = speed_m_s;
@@ -72,7 +78,7 @@ control::DriveLog TrackBench::drive(const TrackCase& what) const {
           : perturbed_poses(simulator, world_from_map, scenarios_.at(group.scenario), what.seed);
   const auto controller = make_controller(what, config, track.trajectory);
   return drive_in_simulator(simulator, world_from_map, *poses, *controller,
-                            track.trajectory.duration_s(), {});
+                            track.trajectory.duration_s(), config, {});
 }
 
 TrackRun TrackBench::run(const TrackCase& what) const {

@@ -55,6 +55,8 @@ TEST(CommandLine, EveryCommandHasHelp) {
                                                        {"info"},
                                                        {"plan"},
                                                        {"drive"},
+                                                       {"tune"},
+                                                       {"identify"},
                                                        {"export"},
                                                        {"import"},
                                                        {"evaluate"},

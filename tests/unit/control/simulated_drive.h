@@ -163,7 +163,7 @@ inline Mission random_mission(std::uint64_t seed) {
   setup.robot.max_speed_m_s = kSpeeds[seed % 4];
   setup.scenario = sim::Scenario();
   setup.scenario.wheels.slip_events_per_minute = 3.0;
-  setup.scenario.motor.command_latency_s = between(0.0, 0.05);
+  setup.scenario.commands.latency_s = between(0.0, 0.05);
   setup.poses = {.rate_hz = between(12, 30),
                  .latency_s = between(0.02, 0.1),
                  .jitter_s = 0.02,

@@ -85,21 +85,8 @@ TEST(Rover, KeepsRollingAtASpeedItCouldNotStartWith) {
 TEST(Rover, NeverExceedsTheMotorsNoLoadSpeed) {
   Simulator simulator(World(bare_floor()), blind_options());
   drive(simulator, {5.0, 0.0, 0.0}, 6.0);
-  EXPECT_LT(simulator.truth().twist.vx, 1.01 * MotorModel{}.no_load_speed_m_s);
-  EXPECT_GT(simulator.truth().twist.vx, 0.8 * MotorModel{}.no_load_speed_m_s);
-}
-
-TEST(Rover, AccelerationIsBoundedByTheMotorsTorque) {
-  Scenario weak = ideal_scenario();
-  weak.motor.stall_torque_nm = 0.05;
-  weak.motor.lag_s = 0.0;
-  Simulator simulator(World(bare_floor()), blind_options(weak));
-  constexpr double kSeconds = 0.25;
-  drive(simulator, {0.8, 0.0, 0.0}, kSeconds);
-  // Four motors push 6.5 kg through wheels of 0.0625 m; torque falls with speed.
-  const double most = 4 * 0.05 / 0.0625 / 6.5 * kSeconds;
-  EXPECT_LT(simulator.truth().twist.vx, 1.02 * most);
-  EXPECT_GT(simulator.truth().twist.vx, 0.7 * most);
+  EXPECT_LT(simulator.truth().twist.vx, 1.01 * maps::RobotModel{}.motor_no_load_speed_m_s);
+  EXPECT_GT(simulator.truth().twist.vx, 0.8 * maps::RobotModel{}.motor_no_load_speed_m_s);
 }
 
 TEST(Rover, HittingAWallIsOneContactEventAndStopsIt) {
@@ -162,7 +149,7 @@ TEST(Rover, NonFiniteCommandsAreTakenForZero) {
 
 TEST(Rover, CommandsArriveAfterTheirLatency) {
   Scenario late = ideal_scenario();
-  late.motor.command_latency_s = 0.3;
+  late.commands.latency_s = 0.3;
   Simulator simulator(World(bare_floor()), blind_options(late));
   drive(simulator, {0.4, 0.0, 0.0}, 0.28);
   EXPECT_LT(std::abs(true_pose(simulator).x), 0.002);

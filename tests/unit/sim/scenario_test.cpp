@@ -42,6 +42,10 @@ std::vector<std::string> values_of(Scenario s) {
   s.imu.describe(c);
   s.wheels.describe(c);
   s.motor.describe(c);
+  s.commands.describe(c);
+  s.payload.describe(c);
+  s.slope.describe(c);
+  s.grip.describe(c);
   s.pose.describe(c);
   return c.all;
 }
@@ -53,6 +57,7 @@ TEST(Scenario, TheDefaultFileSaysWhatTheDefaultsAre) {
   EXPECT_EQ(file.name, "default");
   EXPECT_EQ(values_of(file), values_of(Scenario{}));
   EXPECT_TRUE(file.light_steps.empty() && file.blackouts.empty() && file.kidnaps.empty());
+  EXPECT_TRUE(file.faults.empty());
 }
 
 TEST(Scenario, TheDefaultFileNamesEveryKey) {
@@ -62,6 +67,12 @@ TEST(Scenario, TheDefaultFileNamesEveryKey) {
   }();
   for (const auto& value : values_of(Scenario{})) {
     EXPECT_THAT(text, testing::HasSubstr(value.substr(0, value.find('=')) + ":"));
+  }
+  Fault fault;
+  Collect keys;
+  fault.describe(keys);
+  for (const auto& key : keys.all) {
+    EXPECT_THAT(text, testing::HasSubstr(key.substr(0, key.find('='))));
   }
 }
 
@@ -84,6 +95,10 @@ TEST(Scenario, TheDefaultsLieInsideTheirOwnRanges) {
   EXPECT_NO_THROW(maps::validate(s.imu));
   EXPECT_NO_THROW(maps::validate(s.wheels));
   EXPECT_NO_THROW(maps::validate(s.motor));
+  EXPECT_NO_THROW(maps::validate(s.commands));
+  EXPECT_NO_THROW(maps::validate(s.payload));
+  EXPECT_NO_THROW(maps::validate(s.slope));
+  EXPECT_NO_THROW(maps::validate(s.grip));
   EXPECT_NO_THROW(maps::validate(s.pose));
 }
 
@@ -96,8 +111,14 @@ TEST(Scenario, EventsAreReadInOrder) {
   const Scenario s = parse_scenario(
       "light_steps: [{time_s: 3, factor: 0.35}, {time_s: 6, factor: 1.8}]\n"
       "blackouts:\n  - {start_s: 2, duration_s: 3, kind: covered}\n"
-      "kidnaps:\n  - {time_s: 9, forward_m: 4, turn_deg: 120}\n",
+      "kidnaps:\n  - {time_s: 9, forward_m: 4, turn_deg: 120}\n"
+      "faults:\n  - {kind: poses_late, start_s: 4, duration_s: 2, delay_s: 1.5}\n"
+      "  - {kind: manual_takeover, start_s: 8, within_s: 2}\n",
       "s.yaml");
+  ASSERT_EQ(s.faults.size(), 2U);
+  EXPECT_EQ(s.faults[0].delay_s, 1.5);
+  EXPECT_EQ(s.faults[1].within_s, 2.0);
+  EXPECT_EQ(s.faults[1].duration_s, Fault::kForGood) << "left out: for good";
   ASSERT_EQ(s.light_steps.size(), 2U);
   EXPECT_EQ(s.light_steps[1].factor, 1.8);
   ASSERT_EQ(s.blackouts.size(), 1U);
@@ -121,6 +142,14 @@ TEST(Scenario, BadFilesAreRefusedWithLineValueAndLimit) {
   EXPECT_THAT(refusal_of("blackouts: [{kind: foggy}]"),
               HasSubstr("\"foggy\" is not one of missing, covered"));
   EXPECT_THAT(refusal_of("blackouts: 3"), HasSubstr("must be a list"));
+  EXPECT_THAT(refusal_of("faults: [{kind: gremlins}]"),
+              HasSubstr("\"gremlins\" is not one of poses_stall, poses_late"));
+  EXPECT_THAT(refusal_of("faults:\n  - {kind: battery_low, voltage_share: 2}"),
+              HasSubstr("s.yaml:2: voltage_share = 2 is outside [0, 1]"));
+  EXPECT_THAT(refusal_of("slope:\n  angle_deg: 45\n"),
+              HasSubstr("s.yaml:2: angle_deg = 45 is outside [0, 10]"));
+  EXPECT_THAT(refusal_of("commands: {drop_share: 1}"), HasSubstr("outside [0, 0.95]"));
+  EXPECT_THAT(refusal_of("payload: {mass: 3}"), HasSubstr("nearest valid key is \"mass_kg\""));
   EXPECT_THAT(refusal_of("imu: 3"), HasSubstr("s.yaml:1"));
   EXPECT_THAT(refusal_of("imu: {rate_hz: 3, rate_hz: 4}"), HasSubstr("appears twice"));
   EXPECT_THAT(refusal_of("camera: {min_range_m: 4, max_range_m: 3}"),
