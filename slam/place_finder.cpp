@@ -10,9 +10,9 @@ namespace {
 constexpr double kSamePlaceM = 0.4, kSamePlaceRad = 0.2;
 constexpr double kKeptShare = 0.98;  // of a recognition's weight, a frame; half is left after 34
 constexpr double kForgottenWeight = 0.02;
-constexpr std::size_t kMostViews = 24;      // three radians of turning
+constexpr std::size_t kMostViews = 24;     // three radians of turning
 constexpr double kDoubtedSurface = 500.0;  // points, about one view's: so many are taken on trust
-constexpr std::size_t kFewPoints = 40;      // fit anywhere
+constexpr std::size_t kFewPoints = 40;     // fit anywhere
 constexpr std::size_t kSearchPoints = 150;
 constexpr double kLeastFit = 0.55, kBelowBest = 0.2;  // shares of the points
 constexpr std::size_t kMostPlaces = 6, kMostCandidates = 16;
