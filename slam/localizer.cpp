@@ -44,6 +44,7 @@ void Localizer::Impl::believe_nothing() {
   misses = 0;
   doubt = false;
   contradicted_since_s.reset();
+  unvouched_since_s.reset();
   tracked.clear();
 }
 

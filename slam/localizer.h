@@ -29,7 +29,8 @@ struct PosePrior {
 /// Feed it every observation in time order. Without a prior it finds itself by appearance and by
 /// the shape of what stands around; it says kLost until a place is more likely than not, kDegraded
 /// while that is being confirmed, and kOk only while frames keep matching the map and nothing they
-/// show contradicts it.
+/// show contradicts it. After a jump of the view it is kLost within a second unless what it shows
+/// vouches for the place.
 class Localizer {
  public:
   Localizer(const SlamConfig& config, const Rig& rig, const maps::SavedMap& map,

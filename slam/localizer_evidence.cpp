@@ -13,11 +13,19 @@ namespace {
 constexpr double kRightM = 0.20, kRightRad = 10.0 * maps::kPi / 180.0;
 constexpr double kMostFrames = 30.0;  // more of them add nothing: they share their errors
 constexpr double kMostRecognitions = 6.0;
+constexpr double kMostTellingPoints = 10.0;
+
+/// Points of the scan that this place explains and the best other one does not, less those that it
+/// does not explain itself: a small margin says more the more points it comes from.
+double telling_points(const LocalizerEvidence& e) {
+  const double points = (e.shape_margin - (1.0 - e.scan_share)) * e.scan_points;
+  return std::clamp(points, 0.0, kMostTellingPoints);
+}
 
 // constant, log inliers, matched share, depth share, scan share, log frames, recognitions, rival,
-// shape margin, log scan points, surface share
+// shape margin, log scan points, surface share, telling points
 constexpr std::array<double, kConfidenceFeatures> kWeights = {-14.9, 0.42,  0.0,   1.05, 4.2, 1.05,
-                                                              1.05,  -5.25, 15.75, 0.53, 8.4};
+                                                              1.05,  -5.25, 15.75, 0.53, 8.4, 0.2};
 
 }  // namespace
 
@@ -40,7 +48,8 @@ std::array<double, kConfidenceFeatures> confidence_features(const LocalizerEvide
           std::clamp(e.rival_share, 0.0, 1.0),
           std::clamp(e.shape_margin, -0.3, 0.3),
           std::log1p(std::clamp(e.scan_points, 0, 400) / 40.0),
-          std::clamp(e.surface_share, 0.0, 1.0)};
+          std::clamp(e.surface_share, 0.0, 1.0),
+          telling_points(e)};
 }
 
 double confidence_of(const LocalizerEvidence& e) {

@@ -13,7 +13,7 @@ struct LocalizerEvidence {
   double depth_share = 1.0;    ///< DepthAgreement::share(), with enough to judge
   double scan_share = 1.0;     ///< of the local scan, how much fits the grid
   double surface_share = 1.0;  ///< of what keyframes saw there, how much the views show
-  double shape_margin = 0.0;   ///< mean of these two, less that at the best other place
+  double shape_margin = 0.0;   ///< PlaceCandidate::shape(), less that at the best other place
   int scan_points = 0;
   int agreeing_frames = 0;    ///< since the place was recognised
   double recognitions = 0.0;  ///< by appearance over the whole map, sum of their weights
@@ -37,7 +37,7 @@ double confidence_of(const LocalizerEvidence& evidence);
 double chance_within_limits(double sigma_position_m, double sigma_heading_rad);
 
 /// The inputs of the logistic model, first the constant 1; for the fit.
-inline constexpr std::size_t kConfidenceFeatures = 11;
+inline constexpr std::size_t kConfidenceFeatures = 12;
 std::array<double, kConfidenceFeatures> confidence_features(const LocalizerEvidence& evidence);
 
 }  // namespace rovigo::slam

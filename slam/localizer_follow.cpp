@@ -10,10 +10,12 @@ namespace {
 
 constexpr double kLostAfterS = 0.3;       // of contradiction, after the view has jumped,
 constexpr int kLostAfterMisses = 3;       // and so many frames
+constexpr double kUnvouchedAfterS = 0.8;  // looking around after such a jump, and nothing fits
 constexpr double kReconfirmAfterS = 0.5;  // blind for longer, the rover may be anywhere
 constexpr double kHeldScanShare = 0.75;   // of one view, to hold a pose by it alone
 constexpr std::size_t kEnoughScan = 40;   // points of it,
 constexpr int kEnoughOnMap = 20;          // and of them on ground the map knows
+constexpr double kNewShare = 0.1;         // of the local scan, from one frame to the next
 constexpr double kKeptInliers = 0.98;     // a frame, rounded down; half is left after a second
 
 }  // namespace
@@ -40,9 +42,13 @@ bool Localizer::Impl::hold_by_scan(const SeenView& view, const std::vector<int>&
   const double time_s = view.frame.time_s;
   const Se3 pose = believed(time_s);
   if (view.shows_plenty() && checker.map_knows_view(pose)) return false;
-  const GridMatch match = match_scan(finder.field(), view.scan, to_planar(pose),
-                                     motion.dead_reckoning().pose_covariance());
-  if (match.points < kEnoughOnMap) return false;  // nothing to hold on to
+  const ScanAgreement on_map = scan_agreement(finder.field(), view.scan, to_planar(pose));
+  if (on_map.points < kEnoughOnMap) return false;  // nothing to hold on to
+  // One wall leaves much open; what was seen a moment ago, around a corner, does not.
+  GridMatch match = match_scan(finder.field(), finder.local_scan(), to_planar(pose),
+                               motion.dead_reckoning().pose_covariance());
+  match.look.information *= kNewShare;
+  match.look.gradient *= kNewShare;
   const Se3 held = from_planar(match.look.map_from_base);
   const ViewCheck seen = checker.check(view, local_landmarks, held, SeenView::kPlenty);
   if (seen.contradicts || seen.scan_share < kHeldScanShare) return false;
@@ -76,6 +82,7 @@ void Localizer::Impl::note_agreement(double time_s, int inliers, const ViewCheck
   misses = 0;
   broken = doubt = false;
   contradicted_since_s.reset();
+  unvouched_since_s.reset();
 }
 
 void Localizer::Impl::miss(const SeenView& view, const std::vector<int>& local_landmarks,
@@ -95,7 +102,16 @@ void Localizer::Impl::miss(const SeenView& view, const std::vector<int>& local_l
   if (contradicted && !contradicted_since_s) contradicted_since_s = time_s;
   const bool carried_off = contradicted_since_s && misses >= kLostAfterMisses &&
                            time_s - *contradicted_since_s >= kLostAfterS;
-  if (motion.carried() || prediction.sigma_position_m > config.localizer.lost_sigma_m) {
+  // Where the map knows nothing of the view, nothing contradicts it, and nothing vouches for it.
+  if (!(broken && doubt && motion.planar())) {
+    unvouched_since_s.reset();
+  } else if (!unvouched_since_s) {
+    unvouched_since_s = time_s;
+  }
+  const bool unvouched = was_sure && unvouched_since_s && misses >= kLostAfterMisses &&
+                         time_s - *unvouched_since_s >= kUnvouchedAfterS;
+  if (unvouched || motion.carried() ||
+      prediction.sigma_position_m > config.localizer.lost_sigma_m) {
     lose();
   } else if (carried_off) {
     was_sure ? lose() : drop_guess(time_s);

@@ -42,6 +42,7 @@ struct Localizer::Impl {
   void judge_places(const SeenView& view, bool is_new);
   void recognize(const SeenView& view, const Se3& map_from_base, double weight);
   void look_beside(const SeenView& view, bool recognized);
+  bool fits_as_well(double time_s, const Se3& here, const Slide& aside);
   void step_aside(double time_s, const Se3& map_from_base);
   void adopt(double time_s, const Se3& map_from_base);
   bool hold_by_scan(const SeenView& view, const std::vector<int>& local_landmarks);
@@ -86,6 +87,7 @@ struct Localizer::Impl {
   bool was_sure = false;  ///< of this place, before the camera was blind
   bool doubt = false;     ///< the newest frame shows plenty and does not fit
   std::optional<double> contradicted_since_s;
+  std::optional<double> unvouched_since_s;
   double last_fix_s = -1e9;
   double last_frame_s = -1e9;
   double frame_interval_s = 0.1;  ///< usual one

@@ -18,16 +18,20 @@ constexpr double kSureScanShare = 0.7, kSureDepthShare = 0.8;  // to become OK
 constexpr double kPlausibleScanShare = 0.75;  // to be believed for a moment, unrecognised
 constexpr double kSamePlaceM = 0.7;           // no reason to go elsewhere
 constexpr int kSureScanPoints = 60;
+constexpr int kSureFramesByWalls = 30;
 constexpr double kTellingMargin = 0.04;  // makes up for a scan that shows less
+constexpr double kBetterHeld = 0.03;     // of the local scan: walls in one view alone have misled
 constexpr double kRefutedConfidence = 0.05;
 constexpr double kNoShapeMargin = 0.1;
 constexpr double kWorseThanRival = -0.05;
 constexpr double kMostRival = 0.2;  // share of the votes that another place may have
 constexpr double kStillScanShare = 0.5;
-constexpr double kSureRecognition = 0.9;  // where views cannot be added up
+constexpr double kSureRecognition = 0.9;                           // where views cannot be added up
+constexpr double kSureRecognitions = 4.0, kHardlyRivalled = 0.02;  // make up for few scan points
 constexpr double kFullWeightInliers = 40.0;
 // Of places beside one another, by the features that fit: a sixth fewer leaves a quarter.
 constexpr double kLikenessPower = 8.0, kLeastLikeness = 0.05;
+constexpr double kStepCost = 0.03;  // of the shape: along a wall it hardly changes
 constexpr double kSurelyBetter = 1.15, kNearlyAsGood = 0.85;  // one brick aside
 constexpr int kSureStep = 25;                                 // features; by chance a dozen meet
 
@@ -83,26 +87,33 @@ void Localizer::Impl::recognize(const SeenView& view, const Se3& map_from_base, 
 }
 
 /// Is the view better explained a brick or a panel further? A step aside is taken at once; what is
-/// farther off becomes a rival that shape has to refute.
+/// farther off becomes a rival that shape has to refute. A view that matches many landmarks that
+/// look like no other speaks for the place as one recognised does.
 void Localizer::Impl::look_beside(const SeenView& view, bool recognized) {
   const double time_s = view.frame.time_s;
   const Se3 here = believed(time_s);
   const SlideSpectrum spectrum = slide.around(view.features, here);
-  if (spectrum.best() < kMinTelling || spectrum.elsewhere.empty()) return;
-  bool has_rival = false;
   for (const Slide& s : spectrum.elsewhere) {
-    if (s.shift_map.norm() >= kSamePlaceM) {
-      has_rival |= likeness(s.features, spectrum.best()) >= kLeastLikeness;
-    } else if (s.features > kSurelyBetter * spectrum.here && s.features >= kSureStep) {
+    if (s.shift_map.norm() >= kSamePlaceM) continue;
+    if (s.features > kSurelyBetter * spectrum.here && s.features >= kSureStep &&
+        fits_as_well(time_s, here, s)) {
       step_aside(time_s, shifted(here, s.shift_map));
       return;
-    } else if (s.features > kNearlyAsGood * spectrum.here) {
+    }
+    if (s.features >= kMinTelling && s.features > kNearlyAsGood * spectrum.here) {
       evidence.agreeing_frames = 0;  // it could be either
     }
   }
-  if (has_rival && !recognized && misses == 0) {
-    recognize(view, here, std::min(1.0, spectrum.best() / kFullWeightInliers));
+  if (!recognized && misses == 0 && inliers_now >= kSureTelling) {
+    recognize(view, here, std::min(1.0, inliers_now / kFullWeightInliers));
   }
+}
+
+/// Features alone may meet by chance; what stands around has to fit there, too.
+bool Localizer::Impl::fits_as_well(double time_s, const Se3& here, const Slide& aside) {
+  const Se3 odom = odom_from_base(time_s);
+  return finder.support(shifted(here, aside.shift_map), odom).shape >=
+         finder.support(here, odom).shape - kStepCost;
 }
 
 /// The same room, but matched one brick too far.
@@ -127,6 +138,9 @@ void Localizer::Impl::judge_places(const SeenView& view, bool is_new) {
   const Se3 place = best->map_from_odom * odom;
   const bool there = state != State::kSearching &&
                      (place.translation - believed(time_s).translation).norm() < kSamePlaceM;
+  if (there && evidence.inliers == 0 && best->scan_share > evidence.scan_share + kBetterHeld) {
+    motion.place(time_s, place, kFixSigmaM, kFixSigmaRad);
+  }
   if (there || (matches_here() && best->recognitions <= evidence.recognitions)) return;
   // Odometry says it cannot be elsewhere: the view has jumped, or it was never there.
   if (!was_sure || confidence_of(evidence) < kRefutedConfidence) {
@@ -150,6 +164,7 @@ void Localizer::Impl::adopt(double time_s, const Se3& map_from_base) {
   broken = false;  // before this: the place is judged by what was seen since
   doubt = false;
   contradicted_since_s.reset();
+  unvouched_since_s.reset();
   evidence = {};
   inliers_now = 0;
   last_fix_s = time_s;
@@ -181,8 +196,12 @@ bool Localizer::Impl::is_convincing() const {
     return evidence.depth_share >= kSureDepthShare && evidence.inliers >= kSureTelling &&
            evidence.recognitions >= kSureRecognition && evidence.rival_share <= kMostRival;
   }
-  const bool enough_seen =
-      evidence.scan_points >= kSureScanPoints || evidence.shape_margin >= kTellingMargin;
+  // Walls alone leave a pose open along them until the rover has seen around a corner or two.
+  if (evidence.inliers < kMinTelling && evidence.agreeing_frames < kSureFramesByWalls) return false;
+  const bool clearly_recognized =
+      evidence.recognitions >= kSureRecognitions && evidence.rival_share <= kHardlyRivalled;
+  const bool enough_seen = evidence.scan_points >= kSureScanPoints ||
+                           evidence.shape_margin >= kTellingMargin || clearly_recognized;
   return enough_seen && evidence.scan_share >= kSureScanShare &&
          evidence.rival_share <= kMostRival && confidence_of(evidence) >= kOkConfidence;
 }

@@ -10,9 +10,9 @@ namespace {
 constexpr double kSamePlaceM = 0.4, kSamePlaceRad = 0.2;
 constexpr double kKeptShare = 0.98;  // of a recognition's weight, a frame; half is left after 34
 constexpr double kForgottenWeight = 0.02;
-constexpr std::size_t kMostViews = 24;  // three radians of turning
-constexpr int kEnoughSurface = 300;     // points, of the hundreds a view has
-constexpr std::size_t kFewPoints = 40;  // fit anywhere
+constexpr std::size_t kMostViews = 24;     // three radians of turning
+constexpr double kDoubtedSurface = 500.0;  // points, about one view's: so many are taken on trust
+constexpr std::size_t kFewPoints = 40;     // fit anywhere
 constexpr std::size_t kSearchPoints = 150;
 constexpr double kLeastFit = 0.55, kBelowBest = 0.2;  // shares of the points
 constexpr std::size_t kMostPlaces = 6, kMostCandidates = 16;
@@ -142,9 +142,10 @@ double PlaceFinder::surface_share(const Se3& map_from_odom) const {
     sum.seen_through += a.seen_through;
     sum.hidden += a.hidden;
   }
-  const int judged = sum.at_depth + sum.seen_through;
-  if (judged < kEnoughSurface) return PlaceCandidate::kUnjudgedShare;
-  return static_cast<double>(sum.at_depth) / judged;
+  // A glimpse of something that fits is no match for a room that does: few points leave it at what
+  // nobody knows.
+  const double judged = sum.at_depth + sum.seen_through + kDoubtedSurface;
+  return (sum.at_depth + kDoubtedSurface * PlaceCandidate::kUnjudgedShare) / judged;
 }
 
 /// Candidates that came to be the same are joined, hopeless ones dropped.

@@ -22,8 +22,8 @@ struct PlaceCandidate {
   double surface_share = kUnjudgedShare;  ///< of what keyframes saw there, how much views show
 
   /// Nobody looked that way: neither for nor against.
-  static constexpr double kUnjudgedShare = 0.85;
-  double shape() const { return 0.5 * (scan_share + surface_share); }
+  static constexpr double kUnjudgedShare = 0.92;
+  double shape() const { return (2.0 * scan_share + surface_share) / 3.0; }
 };
 
 /// What speaks for one place, and for the best other one.
@@ -69,6 +69,8 @@ class PlaceFinder {
   /// Forgets recognitions, not the scan: where views cannot be tied together.
   void forget_candidates() { candidates_.clear(); }
 
+  /// The local scan in base_link of the newest frame.
+  const std::vector<ScanPoint>& local_scan() const { return points_; }
   bool has_grid() const { return field_.has_value(); }
   const SignedDistanceField& field() const { return *field_; }
 

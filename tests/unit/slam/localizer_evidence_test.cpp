@@ -51,6 +51,23 @@ TEST(ConfidenceOf, AnotherPlaceOfTheSameShapeIsNotOk) {
   EXPECT_LT(confidence_of(e), kOkConfidence);
 }
 
+TEST(ConfidenceOf, ASmallMarginSaysMoreTheMorePointsItComesFrom) {
+  const auto odds = [](double margin, double scan_share, int points) {
+    LocalizerEvidence e = convincing();
+    e.shape_margin = margin;
+    e.scan_share = scan_share;
+    e.scan_points = points;
+    e.recognitions = e.inliers = 0;
+    const double p = confidence_of(e);
+    return std::log(p / (1.0 - p));
+  };
+  const double gain = odds(0.06, 1.0, 160) - odds(0.06, 1.0, 50);
+  EXPECT_GT(gain, odds(0.0, 1.0, 160) - odds(0.0, 1.0, 50) + 0.5);
+  // Points that fit neither place speak for none.
+  EXPECT_NEAR(odds(0.06, 0.9, 160) - odds(0.06, 0.9, 50), odds(0.0, 0.9, 160) - odds(0.0, 0.9, 50),
+              0.1);
+}
+
 TEST(ConfidenceOf, IsAChanceForAnyEvidence) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> u(-1.0, 2.0);

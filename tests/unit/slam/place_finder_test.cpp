@@ -121,6 +121,29 @@ TEST(PlaceFinder, BeforeTheGridWasSearchedNoPlaceIsUnrivalled) {
   EXPECT_GT(after.shape - after.rival_shape, 0.0);
 }
 
+// Keyframes that looked this way, hardly this way, and not at all.
+TEST(PlaceFinder, AGlimpseOfWhatKeyframesSawSaysLessThanAView) {
+  const DepthRoom room = test::odd_room();
+  const TPose2D start{1.2, 2.0, 0.4};
+  const auto share_with_keyframe_at = [&](double heading) {
+    maps::SavedMap map;
+    map.grid = room.grid();
+    maps::StoredKeyframe k;
+    const TPose2D pose{start.x, start.y, heading};
+    k.map_from_base = to_mrpt(from_planar(pose));
+    cv::imencode(".png", room.depth(pose), k.depth_png);
+    map.keyframes.push_back(std::move(k));
+    Rover rover(room, map, start);
+    rover.turns_to(0.0);
+    return rover.finder.support(from_planar(start), Se3{}).surface_share;
+  };
+  const double whole = share_with_keyframe_at(0.4), glimpse = share_with_keyframe_at(1.09);
+  EXPECT_DOUBLE_EQ(share_with_keyframe_at(3.0), PlaceCandidate::kUnjudgedShare);
+  EXPECT_GT(glimpse, PlaceCandidate::kUnjudgedShare);
+  EXPECT_LT(glimpse, whole - 0.01);
+  EXPECT_GT(whole, 0.97);
+}
+
 TEST(PlaceFinder, APlaceThatLedToContradictionGivesWayToAnother) {
   PlaceFinder finder(maps::OccupancyGrid{}, depths_of({}));
   const Se3 here = from_planar({1, 2, 3}), there = from_planar({4, 2, 0});
