@@ -141,6 +141,32 @@ void add_track_command(CLI::App& app, Action& chosen, bool& json) {
 }
 
 void add_tuning_commands(CLI::App& app, Action& chosen, bool& json) {
+  CLI::App* tune = app.add_subcommand("tune", "Find controller gains for the simulated rover");
+  auto t = bind(*tune, run_tune, chosen, json);
+  tune->footer(
+      "relay: a relay makes each loop oscillate; the gains come from the Ziegler-Nichols table. "
+      "Quick (seconds), and rough.\n"
+      "optimise: tries gains on the suite and keeps what drives best. Minutes.\n"
+      "Both print what the suite measures before and after, also on seeds that nothing was tuned "
+      "on. The same command gives the same gains, whatever the threads.\n"
+      "  rovigo tune --out gains.yaml\n"
+      "  rovigo track --config gains.yaml --report tests\n"
+      "  rovigo tune mine.yaml --method relay --scenario late_poses --set robot.track_width_m=0.4");
+  tune->add_option("suite", t->suite, "A name in sim/suites or a YAML file; default: tuning");
+  tune->add_option("--method", t->method, "optimise (default) or relay")
+      ->check(CLI::IsMember({"optimise", "relay"}));
+  tune->add_option("--scenario", t->scenario,
+                   "Of the relay experiment: a name in sim/scenarios or a YAML file");
+  tune->add_option("--pose", t->pose, "Pose source of every run, whatever the suite says")
+      ->check(CLI::IsMember({"perturbed", "truth"}));
+  tune->add_option("--evaluations", t->evaluations,
+                   "Most settings that optimise tries; default 120")
+      ->check(CLI::Range(1, 100000));
+  tune->add_option("--seed", t->seed, "Of the directions that optimise tries");
+  tune->add_option("--threads", t->threads, "Default: as many as the machine has")
+      ->check(CLI::Range(1, 1024));
+  tune->add_option("--out", t->out, "Write the gains as YAML for --config");
+
   CLI::App* identify =
       app.add_subcommand("identify", "First-order models from logged set-points and responses");
   auto i = bind(*identify, run_identify, chosen, json);

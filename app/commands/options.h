@@ -89,6 +89,17 @@ struct TrackOptions : CommonOptions {
   std::optional<std::filesystem::path> report;
 };
 
+struct TuneOptions : CommonOptions {
+  std::string suite = "tuning";
+  std::string method = "optimise";   ///< or "relay"
+  std::string scenario = "default";  ///< of the relay experiment
+  std::optional<std::string> pose;   ///< perturbed or truth, instead of what the suite says
+  int evaluations = 120;
+  std::uint64_t seed = 1;
+  std::optional<unsigned> threads;
+  std::optional<std::filesystem::path> out;
+};
+
 struct IdentifyOptions : CommonOptions {
   std::filesystem::path log;
   std::optional<std::string> setpoint;
@@ -130,6 +141,7 @@ int run_info(const InfoOptions& options);
 int run_plan(const PlanOptions& options);
 int run_drive(const DriveOptions& options);
 int run_track(const TrackOptions& options);
+int run_tune(const TuneOptions& options);
 int run_identify(const IdentifyOptions& options);
 int run_export(const ExportOptions& options);
 int run_import(const ImportOptions& options);

@@ -105,17 +105,6 @@ planning::TimingProblem geometry_of(const TrackShape& s) {
   return turtle.take();
 }
 
-/// Walls farther away than any shape is long.
-sim::World empty_hall() {
-  constexpr int kCells = 100;
-  maps::OccupancyGrid grid({0.5, {-25.0, -25.0}, kCells, kCells}, maps::OccupancyGrid::kFree);
-  for (int i = 0; i < kCells; ++i) {
-    grid.at({i, 0}) = grid.at({i, kCells - 1}) = maps::OccupancyGrid::kOccupied;
-    grid.at({0, i}) = grid.at({kCells - 1, i}) = maps::OccupancyGrid::kOccupied;
-  }
-  return sim::World::from_grid(grid, 0.5);
-}
-
 PlannedTrack plan_to_goal(const std::string& name, const TrackShape& shape,
                           const RovigoConfig& config) {
   const sim::World world = open_world(shape.world);
@@ -133,6 +122,16 @@ PlannedTrack plan_to_goal(const std::string& name, const TrackShape& shape,
 }
 
 }  // namespace
+
+sim::World empty_hall() {
+  constexpr int kCells = 100;
+  maps::OccupancyGrid grid({0.5, {-25.0, -25.0}, kCells, kCells}, maps::OccupancyGrid::kFree);
+  for (int i = 0; i < kCells; ++i) {
+    grid.at({i, 0}) = grid.at({i, kCells - 1}) = maps::OccupancyGrid::kOccupied;
+    grid.at({0, i}) = grid.at({kCells - 1, i}) = maps::OccupancyGrid::kOccupied;
+  }
+  return sim::World::from_grid(grid, 0.5);
+}
 
 PlannedTrack plan_track(const std::string& name, const TrackShape& shape,
                         const RovigoConfig& config) {

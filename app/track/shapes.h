@@ -16,6 +16,9 @@ struct PlannedTrack {
   TPose2D start;  ///< of the rover, its first heading included
 };
 
+/// A floor of 50 x 50 m around the origin: its walls are farther away than any shape is long.
+sim::World empty_hall();
+
 /// `config.robot` gives the speed. Throws InputError naming `name` when a goal cannot be planned
 /// to.
 PlannedTrack plan_track(const std::string& name, const TrackShape& shape,

@@ -44,6 +44,12 @@ TrackBench::TrackBench(TrackSuite suite, const RovigoConfig& config,
   }
 }
 
+TrackBench TrackBench::with_control(const control::ControlConfig& control) const {
+  TrackBench bench = *this;
+  bench.config_.control = control;
+  return bench;
+}
+
 RovigoConfig TrackBench::config_at(double speed_m_s) const {
   RovigoConfig config = config_;
   config.robot.max_speed_m_s = speed_m_s;

@@ -29,6 +29,8 @@ class TrackBench {
   TrackBench(TrackSuite suite, const RovigoConfig& config, const std::optional<std::string>& pose);
 
   const TrackSuite& suite() const { return suite_; }
+  /// The same runs under other controller settings.
+  TrackBench with_control(const control::ControlConfig& control) const;
   /// May be called from several threads at once.
   TrackRun run(const TrackCase& what) const;
   const PlannedTrack& planned(const TrackCase& what) const;

@@ -55,6 +55,7 @@ TEST(CommandLine, EveryCommandHasHelp) {
                                                        {"info"},
                                                        {"plan"},
                                                        {"drive"},
+                                                       {"tune"},
                                                        {"identify"},
                                                        {"export"},
                                                        {"import"},
