@@ -1,9 +1,11 @@
 // Reads worlds from SDF files. The one place that knows libsdformat, whose headers are heavy.
 
+#include <optional>
 #include <sdf/sdf.hh>
 #include <system_error>
 
 #include "maps/error.h"
+#include "sim/marker_texture.h"
 #include "sim/world.h"
 #include "sim/world_model.h"
 
@@ -151,6 +153,11 @@ class Reader {
     out.color = {c.R(), c.G(), c.B()};
     const std::string script = material->ScriptName();
     if (script.empty()) return out;
+    if (const auto id = marker_id(script)) {
+      out.pattern = Pattern::kMarker;
+      out.seed = *id;
+      return out;
+    }
     std::string known;
     for (const auto& [name, pattern] : pattern_names()) {
       if (script == kTexturePrefix + name) {
@@ -159,7 +166,22 @@ class Reader {
       }
       known += (known.empty() ? "" : ", ") + (kTexturePrefix + name);
     }
-    fail("'" + what + "': unknown material script '" + script + "'; known: " + known);
+    fail("'" + what + "': unknown material script '" + script + "'; known: " + known +
+         ", Rovigo/Marker0 to Rovigo/Marker49");
+  }
+
+  /// "Rovigo/Marker7": the ArUco marker 7.
+  static std::optional<std::uint32_t> marker_id(const std::string& script) {
+    const std::string prefix = std::string(kTexturePrefix) + "Marker";
+    if (script.rfind(prefix, 0) != 0) return std::nullopt;
+    const std::string digits = script.substr(prefix.size());
+    if (digits.empty() || digits.size() > 2 ||
+        digits.find_first_not_of("0123456789") != std::string::npos) {
+      return std::nullopt;
+    }
+    const auto id = static_cast<std::uint32_t>(std::stoul(digits));
+    if (id >= kMarkerIds) return std::nullopt;
+    return id;
   }
 
   /// The rover is put down at the <frame name="rover_start">; without one at the origin.

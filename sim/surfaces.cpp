@@ -8,6 +8,8 @@
 namespace rovigo::sim {
 namespace {
 
+constexpr int kFrontSide = 3;  ///< a box's +x face, see add_box
+
 /// Light from ceiling lamps everywhere: tops are brightest, undersides get what the floor returns,
 /// and walls differ a little by heading so that corners show.
 float light_on(const Eigen::Vector3d& normal) {
@@ -40,12 +42,12 @@ class Builder {
   void add_box(const Solid& solid) {
     const Eigen::Vector3d x = solid_axis(solid, 0);
     const Eigen::Vector3d y = solid_axis(solid, 1);
-    add_quad(solid, {3, 2, 1, 0}, 0, x, 0.0);   // bottom
-    add_quad(solid, {4, 5, 6, 7}, 1, x, 0.0);   // top
-    add_quad(solid, {0, 1, 5, 4}, 2, x, 0.0);   // -y
-    add_quad(solid, {1, 2, 6, 5}, 3, y, 0.0);   // +x
-    add_quad(solid, {2, 3, 7, 6}, 4, -x, 0.0);  // +y
-    add_quad(solid, {3, 0, 4, 7}, 5, -y, 0.0);  // -x
+    add_quad(solid, {3, 2, 1, 0}, 0, x, 0.0);           // bottom
+    add_quad(solid, {4, 5, 6, 7}, 1, x, 0.0);           // top
+    add_quad(solid, {0, 1, 5, 4}, 2, x, 0.0);           // -y
+    add_quad(solid, {1, 2, 6, 5}, kFrontSide, y, 0.0);  // +x
+    add_quad(solid, {2, 3, 7, 6}, 4, -x, 0.0);          // +y
+    add_quad(solid, {3, 0, 4, 7}, 5, -y, 0.0);          // -x
   }
 
   void add_cylinder(const Solid& solid) {
@@ -82,11 +84,25 @@ class Builder {
     const std::uint64_t bits = derive_seed(solid.material.seed, static_cast<std::uint64_t>(side));
     face.u_offset = static_cast<double>(bits % Texture::kSide) + u_start_m * scale;
     face.v_offset = static_cast<double>((bits >> 32U) % Texture::kSide);
+    if (solid.material.pattern == Pattern::kMarker) fit_marker(solid, quad, side, face);
     const auto& c = solid.material.color;
     face.color = Eigen::Vector3f(c[0], c[1], c[2]) * light_on(face.normal);
     quad.face = static_cast<int>(out_.faces.size());
     out_.faces.push_back(face);
     out_.quads.push_back(quad);
+  }
+
+  /// The print fills the +x face of a box once, from corner to corner.
+  static void fit_marker(const Solid& solid, const Quad& quad, int side, Face& face) {
+    if (solid.kind != Solid::Kind::kBox || side != kFrontSide) {
+      face.texture = nullptr;
+      return;
+    }
+    const Eigen::Vector3d u = quad.corners[1] - quad.corners[0];
+    const Eigen::Vector3d v = quad.corners[3] - quad.corners[0];
+    face.u_axis = u * (Texture::kSide / u.squaredNorm());
+    face.v_axis = v * (Texture::kSide / v.squaredNorm());
+    face.u_offset = face.v_offset = 0.0;
   }
 
   TextureLibrary* library_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/marker_texture.h"
 #include "sim/random.h"
 
 namespace rovigo::sim {
@@ -248,10 +249,20 @@ Rgb color_at(Pattern pattern, float u, float v, std::uint32_t seed) {
     case Pattern::kCardboard:
       return cardboard(u, v, seed);
     case Pattern::kPoster:  // drawn as a whole, see Print
+    case Pattern::kMarker:  // and see marker_color
     case Pattern::kPlain:
       break;
   }
   return {};
+}
+
+/// Texture coordinates grow upwards, the print's rows downwards.
+Rgb marker_color(const MarkerPrint& print, float u, float v) {
+  const auto cell = [](float share) {
+    return static_cast<std::size_t>(
+        std::clamp(static_cast<int>(share * kMarkerPrintCells), 0, kMarkerPrintCells - 1));
+  };
+  return grey(print[cell(1.0F - v)][cell(u)] ? 0.06F : 1.0F);
 }
 
 std::uint8_t to_texel(float value) {
@@ -291,14 +302,16 @@ std::unique_ptr<Texture> bake(Pattern pattern, std::uint32_t seed) {
   auto texture = std::make_unique<Texture>();
   if (pattern == Pattern::kPoster) texture->texels_per_m = kSide;  // a print covers 1 m
   const Print print(seed);
+  const MarkerPrint marker = pattern == Pattern::kMarker ? marker_print(seed) : MarkerPrint{};
   std::vector<std::uint8_t> level(static_cast<std::size_t>(kSide) * kSide * 4);
   std::uint8_t* texel = level.data();
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x, texel += 4) {
       const float u = (static_cast<float>(x) + 0.5F) / kSide;
       const float v = (static_cast<float>(y) + 0.5F) / kSide;
-      const Rgb c =
-          pattern == Pattern::kPoster ? print.color_at(u, v) : color_at(pattern, u, v, seed);
+      const Rgb c = pattern == Pattern::kPoster   ? print.color_at(u, v)
+                    : pattern == Pattern::kMarker ? marker_color(marker, u, v)
+                                                  : color_at(pattern, u, v, seed);
       texel[0] = to_texel(c.b);
       texel[1] = to_texel(c.g);
       texel[2] = to_texel(c.r);
@@ -312,7 +325,7 @@ std::unique_ptr<Texture> bake(Pattern pattern, std::uint32_t seed) {
 }
 
 bool is_unique_per_surface(Pattern pattern) {
-  return pattern == Pattern::kPoster || pattern == Pattern::kBooks;
+  return pattern == Pattern::kPoster || pattern == Pattern::kBooks || pattern == Pattern::kMarker;
 }
 
 }  // namespace

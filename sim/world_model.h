@@ -23,6 +23,7 @@ enum class Pattern {
   kBooks,      ///< rows of book spines
   kPoster,     ///< a print: shapes and lines of text, different on every surface
   kCardboard,  ///< brown board with tape and labels
+  kMarker,     ///< an ArUco marker that fills the +x face of a box; the other faces stay plain
 };
 
 /// Name in SDF files ("Rovigo/Bricks"), and back; nullptr-free and exhaustive.
@@ -31,7 +32,7 @@ const std::vector<std::pair<std::string, Pattern>>& pattern_names();
 struct Material {
   std::array<float, 3> color{0.7F, 0.7F, 0.7F};  ///< red, green, blue, 0 .. 1
   Pattern pattern = Pattern::kPlain;
-  std::uint32_t seed = 0;  ///< makes two surfaces of one pattern differ
+  std::uint32_t seed = 0;  ///< makes two surfaces of one pattern differ; of a marker: its id
 };
 
 /// A solid: box (size x, y, z), upright cylinder along its z axis (size: diameter, diameter,
