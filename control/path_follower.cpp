@@ -18,8 +18,13 @@ constexpr double kTurnShare = 0.9;        ///< of the turn limits used, so that 
 constexpr double kCatchUpShare = 0.2;     ///< a late rover may drive this much above plan ...
 constexpr double kCatchUpSpeedMS = 0.04;  ///< ... plus this
 constexpr double kIntegralShare = 0.3;    ///< the speed integral's authority; none at a stop
-constexpr double kLostTurnRad = 0.4;      ///< heading error at which a turn's reference waits
-constexpr double kNudgeRad = 0.2;         ///< up to here a standing rover is nudged, not steered
+// A steady cross-track error is taken out over this way, or this time where that is longer; by
+// aiming at most this far beside the path.
+constexpr double kDriftLengthM = 1.0, kDriftTimeS = 3.0, kMostDriftM = 0.03;
+// A turn in place that is farther off its place than this goes back to it.
+constexpr double kTurnOffPlaceM = 0.01, kTurnBackRate_1_s = 1.0, kTurnBackSpeedMS = 0.08;
+constexpr double kLostTurnRad = 0.4;  ///< heading error at which a turn's reference waits
+constexpr double kNudgeRad = 0.2;     ///< up to here a standing rover is nudged, not steered
 constexpr SearchWindow kResumeWindow{.back_m = 0.5, .ahead_m = 1.0};
 
 /// 1 up to `from`, falling to 0 at `to`.
@@ -69,6 +74,7 @@ void PathFollower::resume(const TPose2D& pose, double speed_m_s) {
   speed_pi_.reset();
   pace_ = 0.0;
   rest_time_s_ = 0.0;
+  drift_m_ = 0.0;
   if (leg_index_ >= legs_.legs().size()) return;
   const Leg& leg = legs_.legs()[leg_index_];
   if (leg.kind == LegKind::kTurn) return;  // the turn's pace waits for the heading by itself
@@ -97,6 +103,7 @@ void PathFollower::next_leg() {
   rest_time_s_ = 0.0;
   turning_first_ = false;
   nudge_.reset();
+  drift_m_ = 0.0;
   heading_pi_.reset();
   speed_pi_.reset();
 }
@@ -123,9 +130,18 @@ PathFollower::Approach PathFollower::approach(const PathPlace& place, double hea
   // Fades out just before a stop, so that the rover ends along the path.
   const double gain = approach_gain(speed) * std::clamp(remaining / kFadeBeforeStopM, 0.0, 1.0);
   const double steepest = config_.max_approach_angle_rad;
-  const double bend = std::tanh(gain * place.cross_track_m / steepest);
+  const double bend = std::tanh(gain * (place.cross_track_m + drift_m_) / steepest);
   const double speed_across = speed * std::sin(-heading_error);
   return {-steepest * bend, -gain * (1.0 - bend * bend) * speed_across};
+}
+
+/// What pushes the rover aside all the time (a slope, wheels that do not point ahead) is answered
+/// by the integral of the cross-track error over the way driven.
+void PathFollower::learn_drift(double cross_track_m, const FollowInput& in) {
+  const double dt = in.dt_s > 0.0 ? std::min(in.dt_s, PiController::kLongestStepS) : 0.0;
+  const double error = std::clamp(cross_track_m, -kEasyOffPathM, kEasyOffPathM);
+  const double rate = std::clamp(in.twist.vx / kDriftLengthM, 0.0, 1.0 / kDriftTimeS);
+  drift_m_ = std::clamp(drift_m_ + error * rate * dt, -kMostDriftM, kMostDriftM);
 }
 
 FollowOutput PathFollower::drive(const Leg& leg, const FollowInput& in) {
@@ -146,6 +162,7 @@ FollowOutput PathFollower::drive(const Leg& leg, const FollowInput& in) {
     if (std::abs(in.twist.vx) < kStandingSpeedMS) next_leg();
     return out;  // standstill is wanted
   }
+  learn_drift(place.cross_track_m, in);
   const Approach to_path = approach(place, out.heading_error_rad, remaining, in.twist.vx);
   const double error = wrap_angle(out.heading_error_rad + to_path.heading);
   if (must_turn_first(error)) {
@@ -285,10 +302,21 @@ FollowOutput PathFollower::turn(const Leg& leg, const FollowInput& in) {
       in.dt_s);
   const bool stands = std::abs(in.twist.omega) < kStandingTurnRateRadS;
   const bool nearly = reference_time_s_ >= end && std::abs(error) < kNudgeRad;
-  out.wanted.omega = nudge_.is_pushing() || (nearly && stands)
-                         ? nudge_.step(error, in.dt_s, in.dead_zone_m_s, in.turn_gain, limits_)
-                         : turn_in_place(error, pace_ * planned, in);
+  if (nudge_.is_pushing() || (nearly && stands)) {
+    out.wanted.omega = nudge_.step(error, in.dt_s, in.dead_zone_m_s, in.turn_gain, limits_);
+    return out;
+  }
+  out.wanted.omega = turn_in_place(error, pace_ * planned, in);
+  out.wanted.vx = way_back(now.pose, in);
   return out;
+}
+
+/// A turn that slid off its place (wheels slip, floors slope) goes back there while the rover faces
+/// it; never backwards.
+double PathFollower::way_back(const TPose2D& place, const FollowInput& in) const {
+  const TPoint2D seen = maps::position_of(maps::compose(maps::inverse(in.pose), place));
+  if (std::hypot(seen.x, seen.y) < kTurnOffPlaceM) return 0.0;
+  return std::clamp(kTurnBackRate_1_s * seen.x, 0.0, std::min(kTurnBackSpeedMS, in.speed_cap_m_s));
 }
 
 }  // namespace rovigo::control

@@ -59,6 +59,8 @@ class PathFollower {
   bool has_arrived(const Leg& leg, double remaining) const;
   bool must_turn_first(double error);
   double approach_gain(double speed) const;
+  void learn_drift(double cross_track_m, const FollowInput& in);
+  double way_back(const TPose2D& place, const FollowInput& in) const;
   Approach approach(const PathPlace& place, double heading_error, double remaining,
                     double speed) const;
   double wanted_speed(const Leg& leg, const PathPlace& place, double heading_error,
@@ -80,6 +82,7 @@ class PathFollower {
   double arc_m_ = 0.0;
   double rest_time_s_ = 0.0;  ///< spent at the end of the leg
   bool turning_first_ = false;
+  double drift_m_ = 0.0;  ///< integral of the cross-track error over the way, per its length
 };
 
 }  // namespace rovigo::control

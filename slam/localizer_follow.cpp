@@ -42,8 +42,11 @@ bool Localizer::Impl::hold_by_scan(const SeenView& view, const std::vector<int>&
   const double time_s = view.frame.time_s;
   const Se3 pose = believed(time_s);
   if (view.shows_plenty() && checker.map_knows_view(pose)) return false;
-  const ScanAgreement on_map = scan_agreement(finder.field(), view.scan, to_planar(pose));
-  if (on_map.points < kEnoughOnMap) return false;  // nothing to hold on to
+  const auto known = [&](const ScanPoint& p) {
+    return finder.field().cell_at(maps::transform(to_planar(pose), p.base_point)).known;
+  };
+  // On ground nobody has seen there is nothing to hold on to.
+  if (std::count_if(view.scan.begin(), view.scan.end(), known) < kEnoughOnMap) return false;
   // One wall leaves much open; what was seen a moment ago, around a corner, does not.
   GridMatch match = match_scan(finder.field(), finder.local_scan(), to_planar(pose),
                                motion.dead_reckoning().pose_covariance());

@@ -47,6 +47,40 @@ TEST(ControlConfig, DefaultsAreWithinTheirRanges) {
   EXPECT_NO_THROW(maps::validate(ControlConfig()));
 }
 
+TEST(Tracker, ASteadyPushToTheSideIsTakenOut) {
+  const auto plan = TrajectoryBuilder({}, {}).line(6).get();
+  DriveSetup setup;
+  setup.disturb = [](double, Plant& plant) {  // 2 cm/s to the left while it drives, as on a slope
+    TPose2D pose = plant.pose();
+    if (plant.twist().vx > 0.02) pose.y += 0.02 * 0.01;
+    plant.put(pose);
+  };
+  const Outcome run = drive(plan, setup);
+  EXPECT_EQ(run.log.status, TrackStatus::kReached);
+  double worst = 0.0;
+  for (const DriveStep& s : run.log.steps) {
+    if (s.true_pose.x > 3.0 && s.true_pose.x < 5.5) {
+      worst = std::max(worst, std::abs(s.true_pose.y));
+    }
+  }
+  // Without the integral: 2 cm/s over the loop's 1.8 1/s, 11 mm.
+  EXPECT_LT(worst, 0.004);
+}
+
+TEST(Tracker, ATurnThatSlidOffItsPlaceGoesBackThereForwards) {
+  const auto plan = TrajectoryBuilder({}, {}).turn(maps::kPi).get();
+  DriveSetup setup;
+  setup.disturb = [](double time, Plant& plant) {  // 5 cm to the right, once
+    if (std::abs(time - 1.0) > 0.001) return;
+    TPose2D pose = plant.pose();
+    pose.y -= 0.05;
+    plant.put(pose);
+  };
+  const Outcome run = drive(plan, setup);
+  for (const DriveStep& s : run.log.steps) ASSERT_GE(s.command.vx, 0.0);
+  EXPECT_LT(std::abs(run.log.steps.back().true_pose.y), 0.02);
+}
+
 TEST(Tracker, DrivesACurveAndStopsCleanlyAtTheGoal) {
   const Outcome run = drive(testing::moderate_curve({}));
   EXPECT_EQ(run.log.status, TrackStatus::kReached);
