@@ -128,7 +128,7 @@ void add_track_command(CLI::App& app, Action& chosen, bool& json) {
   auto t = bind(*track, run_track, chosen, json);
   track->add_option("suite", t->suite, "A name in sim/suites or a YAML file; default: default");
   track->add_option("--pose", t->pose, "Pose source of every run, whatever the suite says")
-      ->check(CLI::IsMember({"perturbed", "truth"}));
+      ->check(CLI::IsMember({"perturbed", "truth", "slam", "odometry"}));
   track->add_option("--shard", t->shard, "Drive only share I of N of the runs")->type_name("I/N");
   track->add_option("--merge", t->merge, "Put together what shards with --json printed")
       ->type_name("FILES...");
