@@ -1,0 +1,115 @@
+// The law of motion's turning half: how hard to steer, and turns in place.
+
+#include <algorithm>
+#include <cmath>
+
+#include "control/path_follower.h"
+#include "control/ramps.h"
+
+namespace rovigo::control {
+namespace {
+
+using maps::wrap_angle;
+
+constexpr double kStandingTurnRateRadS = 0.05;
+constexpr double kTurnShare = 0.9;     ///< of the turn limits used, so that feedback has room
+constexpr double kEasyTurnRad = 0.15;  ///< a turn's reference waits from this heading error on ...
+constexpr double kLostTurnRad = 0.4;   ///< ... and stands from this
+constexpr double kNudgeRad = 0.2;      ///< up to here a standing rover is nudged, not steered
+// A turn in place that is farther off its place than this goes back to it.
+constexpr double kTurnOffPlaceM = 0.01, kTurnBackRate_1_s = 1.0, kTurnBackSpeedMS = 0.08;
+
+}  // namespace
+
+/// A proportional loop asks for more turning than it can stop again when the error is large; what
+/// it swings back over grows from swing to swing. Beyond what the acceleration allows the response
+/// grows with the root only; half of it is left for what comes late.
+double PathFollower::stoppable_error(double error) const {
+  const double kp = config_.heading_kp_1_s, a = 0.5 * limits_.max_yaw_acceleration_rad_s2;
+  const double linear = a / (kp * kp);
+  if (std::abs(error) <= linear) return error;
+  return std::copysign(braking_speed(std::abs(error) - linear / 2, a) / kp, error);
+}
+
+/// 1 while the turn asked for can be had; below that, the share of speed at which the path's
+/// curvature leaves enough of the turn limit to come back.
+double PathFollower::steering_room(double turn_rate, const FollowInput& in) const {
+  constexpr double kLeast = 0.3;
+  const double reach = limits_.max_yaw_rate_rad_s * in.turn_gain;
+  const double asked = std::abs(turn_rate);
+  return asked > reach ? std::max(kLeast, reach / asked) : 1.0;
+}
+
+double PathFollower::steer(double error, double feed_forward, double integral_limit,
+                           const FollowInput& in) {
+  const double reach = limits_.max_yaw_rate_rad_s * in.turn_gain;
+  return heading_pi_.update({.error = error,
+                             .feed_forward = feed_forward,
+                             .dt_s = in.dt_s,
+                             .min = -reach,
+                             .max = reach,
+                             .integral_limit = integral_limit}) /
+         in.turn_gain;
+}
+
+/// A large turn is braked in time: the turn rate never exceeds what can still be stopped.
+double PathFollower::turn_in_place(double error, double feed_forward, const FollowInput& in) {
+  // Near half a turn noise flips the error's sign; the turn under way decides the direction.
+  constexpr double kAmbiguousRad = 2.8;
+  double to_go = error;
+  if (std::abs(error) > kAmbiguousRad && error * in.twist.omega < 0.0 &&
+      std::abs(in.twist.omega) > kStandingTurnRateRadS) {
+    to_go = error - std::copysign(2.0 * maps::kPi, error);
+  }
+  const double stoppable =
+      braking_speed(std::abs(to_go), kTurnShare * limits_.max_yaw_acceleration_rad_s2);
+  const double rate = steer(to_go, feed_forward, 0.1 + 0.2 * std::abs(feed_forward), in);
+  return std::clamp(rate, -std::max(stoppable, std::abs(feed_forward)),
+                    std::max(stoppable, std::abs(feed_forward)));
+}
+
+FollowOutput PathFollower::turn(const Leg& leg, const FollowInput& in) {
+  const double end = legs_.end_time_s(leg);
+  const auto& trajectory = legs_.trajectory();
+  const planning::TrajectoryPoint now = planning::sample(trajectory, reference_time_s_);
+  const double ahead = std::min(reference_time_s_ + config_.drive_lag_s, end);
+  const double planned = ahead < end ? planning::sample(trajectory, ahead).yaw_rate_rad_s : 0.0;
+
+  FollowOutput out;
+  const double error = wrap_angle(now.pose.phi - in.pose.phi);
+  out.heading_error_rad = error;
+  const bool close = std::abs(error) <= config_.fine_heading_tolerance_rad &&
+                     std::abs(in.twist.omega) < kStandingTurnRateRadS;
+  const bool long_enough = !nudge_.is_pushing() && rest_time_s_ > config_.settle_time_s &&
+                           std::abs(error) <= config_.goal_heading_tolerance_rad;
+  if (reference_time_s_ >= end && (close || long_enough)) {
+    next_leg();
+    return out;
+  }
+  const double behind = error * planned >= 0.0 ? std::abs(error) : 0.0;
+  const double pace = falling(std::abs(error) > kLostTurnRad ? std::abs(error) : behind,
+                              kEasyTurnRad, kLostTurnRad);
+  advance_reference(
+      leg, pace,
+      limits_.max_yaw_acceleration_rad_s2 / std::max(std::abs(planned), kStandingTurnRateRadS),
+      in.dt_s);
+  const bool stands = std::abs(in.twist.omega) < kStandingTurnRateRadS;
+  const bool nearly = reference_time_s_ >= end && std::abs(error) < kNudgeRad;
+  if (nudge_.is_pushing() || (nearly && stands)) {
+    out.wanted.omega = nudge_.step(error, in.dt_s, in.dead_zone_m_s, in.turn_gain, limits_);
+    return out;
+  }
+  out.wanted.omega = turn_in_place(error, pace_ * planned, in);
+  out.wanted.vx = way_back(now.pose, in);
+  return out;
+}
+
+/// A turn that slid off its place (wheels slip, floors slope) goes back there while the rover faces
+/// it; never backwards.
+double PathFollower::way_back(const TPose2D& place, const FollowInput& in) const {
+  const TPoint2D seen = maps::position_of(maps::compose(maps::inverse(in.pose), place));
+  if (std::hypot(seen.x, seen.y) < kTurnOffPlaceM) return 0.0;
+  return std::clamp(kTurnBackRate_1_s * seen.x, 0.0, std::min(kTurnBackSpeedMS, in.speed_cap_m_s));
+}
+
+}  // namespace rovigo::control
