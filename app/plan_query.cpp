@@ -33,13 +33,17 @@ maps::SavedMap open_planning_map(const std::filesystem::path& path, const Consol
   return map;
 }
 
-planning::DrivePlanner drive_planner_on(const maps::SavedMap& map, const RovigoConfig& config) {
-  std::vector<TPoint2D> been;
-  been.reserve(map.trajectory.size());
+std::vector<TPoint2D> recorded_way(const maps::SavedMap& map) {
+  std::vector<TPoint2D> way;
+  way.reserve(map.trajectory.size());
   for (const auto& stored : map.trajectory) {
-    been.push_back(maps::position_of(TPose2D(stored.map_from_base.asTPose())));
+    way.push_back(maps::position_of(TPose2D(stored.map_from_base.asTPose())));
   }
-  return {map.grid, config.robot, config.inflation, config.planning, been};
+  return way;
+}
+
+planning::DrivePlanner drive_planner_on(const maps::SavedMap& map, const RovigoConfig& config) {
+  return {map.grid, config.robot, config.inflation, config.planning, recorded_way(map)};
 }
 
 RovigoConfig with_route_options(RovigoConfig config, const RouteRequest& route) {

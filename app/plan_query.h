@@ -18,6 +18,9 @@ namespace rovigo::app {
 /// The map with its no-go zones drawn into the grid as obstacles; warnings go to the console.
 maps::SavedMap open_planning_map(const std::filesystem::path& path, const Console& console);
 
+/// Where the rover was while the map was recorded.
+std::vector<TPoint2D> recorded_way(const maps::SavedMap& map);
+
 /// Plans that are to be driven on this map.
 planning::DrivePlanner drive_planner_on(const maps::SavedMap& map, const RovigoConfig& config);
 

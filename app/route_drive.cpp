@@ -235,10 +235,15 @@ class RouteDrive {
 
 }  // namespace
 
-planning::Planner route_planner(const sim::World& world, const RovigoConfig& config,
-                                double speed_m_s) {
+maps::OccupancyGrid obstacle_grid(const sim::World& world, const RovigoConfig& config) {
   constexpr double kLowestObstacleM = 0.02;
   constexpr double kHeadroomM = 0.1;
+  return sim::true_grid(world, config.slam.grid.grid_resolution_m, kLowestObstacleM,
+                        config.robot.body_height_m + kHeadroomM);
+}
+
+planning::Planner route_planner(const sim::World& world, const RovigoConfig& config,
+                                double speed_m_s) {
   maps::RobotModel robot = config.robot;
   robot.max_speed_m_s = std::min(robot.max_speed_m_s, speed_m_s);
   // Who records keeps well clear of things: the camera sees more, and nothing hurries.
@@ -246,9 +251,7 @@ planning::Planner route_planner(const sim::World& world, const RovigoConfig& con
   planning::PlannerConfig planning = config.planning;
   inflation.soft_cost_sigma_m = std::max(inflation.soft_cost_sigma_m, 0.15);
   planning.astar.soft_cost_weight = std::max(planning.astar.soft_cost_weight, 3.0);
-  return {sim::true_grid(world, config.slam.grid.grid_resolution_m, kLowestObstacleM,
-                         config.robot.body_height_m + kHeadroomM),
-          robot, inflation, planning};
+  return {obstacle_grid(world, config), robot, inflation, planning};
 }
 
 TPose2D route_start(const sim::Route& route, const sim::World& world,

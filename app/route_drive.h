@@ -13,6 +13,10 @@
 
 namespace rovigo::app {
 
+/// The world's true grid as the rover meets it: everything between 0.02 m and a little above the
+/// body is an obstacle.
+maps::OccupancyGrid obstacle_grid(const sim::World& world, const RovigoConfig& config);
+
 /// Plans on the world's true grid: everything between 0.02 m and a little above the body is an
 /// obstacle (true poses and grids are allowed in `record`, and only there).
 planning::Planner route_planner(const sim::World& world, const RovigoConfig& config,

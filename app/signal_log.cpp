@@ -46,19 +46,11 @@ std::string folded(const std::string& column) {
   return out;
 }
 
-bool begins_with(const std::string& text, const std::string& start) {
-  return text.rfind(start, 0) == 0;
-}
-
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
-}
-
 std::string unit_of(const std::string& column) {
-  if (ends_with(column, "_rad_s")) return "rad/s";
-  if (ends_with(column, "_m_s")) return "m/s";
-  if (ends_with(column, "_rad")) return "rad";
-  if (ends_with(column, "_m")) return "m";
+  if (column.ends_with("_rad_s")) return "rad/s";
+  if (column.ends_with("_m_s")) return "m/s";
+  if (column.ends_with("_rad")) return "rad";
+  if (column.ends_with("_m")) return "m";
   return "";
 }
 
@@ -79,7 +71,7 @@ class Header {
   std::size_t time() const {
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const std::string name = folded(names_[i]);
-      if (name == "t" || name == "ts" || begins_with(name, "time")) return i;
+      if (name == "t" || name == "ts" || name.starts_with("time")) return i;
     }
     fail("has no column of times (time_s or t_s)");
   }
@@ -123,7 +115,7 @@ class Header {
   std::optional<std::size_t> find_beginning(const std::vector<std::string>& starts) const {
     for (const auto& start : starts) {
       for (std::size_t i = 0; i < names_.size(); ++i) {
-        if (begins_with(folded(names_[i]), start)) return i;
+        if (folded(names_[i]).starts_with(start)) return i;
       }
     }
     return std::nullopt;

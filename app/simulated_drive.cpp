@@ -11,8 +11,6 @@ namespace rovigo::app {
 
 namespace {
 
-constexpr int kStepsPerCommand = 2;  // 120 Hz on a 240 Hz simulator
-
 class Sha256 {
  public:
   Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {

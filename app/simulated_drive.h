@@ -20,6 +20,7 @@ struct DriveHooks {
   std::function<void(const mrpt::obs::CObservation&)> observation;
 };
 
+inline constexpr int kStepsPerCommand = 2;    ///< 120 Hz on a 240 Hz simulator
 inline constexpr double kStandBeforeS = 1.0;  ///< the gyro's bias can be learned
 inline constexpr double kStandAfterS = 0.5;
 inline constexpr double kDriveCameraHz = 15.0;  ///< while it drives on poses from the camera

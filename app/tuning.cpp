@@ -9,6 +9,7 @@
 #include "app/console.h"
 #include "app/parallel.h"
 #include "app/pose_source.h"
+#include "app/simulated_drive.h"
 #include "app/text.h"
 #include "app/track/shapes.h"
 #include "sim/simulator.h"
@@ -22,7 +23,6 @@ constexpr std::array kTuned{"heading_kp_1_s", "heading_ki_1_s2", "speed_kp_1_s",
 constexpr double kLeastGain = 0.01;  // what is searched by factors cannot be zero
 constexpr double kFailedRunMm = 1000.0;
 
-constexpr int kStepsPerCommand = 2;  // as in every drive
 constexpr double kCommandS = kStepsPerCommand * sim::Simulator::kStepS;
 constexpr double kCruiseMS = 0.3;
 constexpr double kSpeedRelayMS = 0.1, kTurnRelayRadS = 0.3;

@@ -69,6 +69,15 @@ class RowSearch {
 
 }  // namespace
 
+DistanceField distance_to_points(const GridGeometry& geometry,
+                                 const std::vector<TPoint2D>& points) {
+  OccupancyGrid marked(geometry, OccupancyGrid::kFree);
+  for (const TPoint2D& p : points) {
+    if (geometry.contains(p)) marked.at(geometry.cell_at(p)) = OccupancyGrid::kOccupied;
+  }
+  return distance_to_occupied(marked);
+}
+
 double clearance_at(const OccupancyGrid& grid, const DistanceField& field, const TPoint2D& point,
                     double limit_m) {
   const GridGeometry& g = grid.geometry;

@@ -20,6 +20,10 @@ struct DistanceField {
 /// offset so that distances reach to cell edges).
 DistanceField distance_to_occupied(const OccupancyGrid& grid);
 
+/// The same where the obstacles are the cells that these points lie in; points outside do not
+/// count.
+DistanceField distance_to_points(const GridGeometry& geometry, const std::vector<TPoint2D>& points);
+
 /// Metres from `point` (anywhere, also between centres) to the edge of the nearest occupied cell,
 /// exact; at most `limit_m` is looked at and returned. Outside the grid there is nothing.
 double clearance_at(const OccupancyGrid& grid, const DistanceField& field, const TPoint2D& point,

@@ -22,21 +22,6 @@ constexpr double kOpenedRadiusM = 0.25;
 /// Of the margin, what is kept in any case.
 constexpr double kLeastShare = 0.75;
 
-/// Cells within `radius_m` of a point.
-std::vector<bool> around(const std::vector<TPoint2D>& points, double radius_m,
-                         const maps::GridGeometry& g) {
-  OccupancyGrid marked(g, OccupancyGrid::kFree);
-  for (const TPoint2D& p : points) {
-    if (g.contains(p)) marked.at(g.cell_at(p)) = OccupancyGrid::kOccupied;
-  }
-  std::vector<bool> out;
-  out.reserve(g.size());
-  for (const float d : maps::distance_to_occupied(marked).meters) {
-    out.push_back(static_cast<double>(d) <= radius_m);
-  }
-  return out;
-}
-
 /// The grid with unseen ground as obstacles. Only where two cells by two are unknown: a gap between
 /// the camera's rays hides nothing that stands on the floor. The camera does not see the floor
 /// under the rover and beside it; where one has been there is nothing.
@@ -44,12 +29,13 @@ OccupancyGrid with_unseen_blocked(const OccupancyGrid& grid, const std::vector<T
                                   double clear_m) {
   OccupancyGrid out = grid;
   const auto& g = grid.geometry;
-  const std::vector<bool> known = around(been, clear_m, g);
+  const maps::DistanceField to_been = maps::distance_to_points(g, been);
   for (int y = 0; y + 1 < g.height; ++y) {
     for (int x = 0; x + 1 < g.width; ++x) {
       const Cell block[] = {{x, y}, {x + 1, y}, {x, y + 1}, {x + 1, y + 1}};
       const bool whole = std::all_of(std::begin(block), std::end(block), [&](Cell c) {
-        return OccupancyGrid::is_unknown(grid.at(c)) && !known[g.index_of(c)];
+        return OccupancyGrid::is_unknown(grid.at(c)) &&
+               static_cast<double>(to_been.at(c)) > clear_m;
       });
       if (!whole) continue;
       for (const Cell c : block) out.at(c) = OccupancyGrid::kOccupied;

@@ -5,25 +5,22 @@
 #include "app/ground.h"
 #include "app/plan_query.h"
 #include "app/resources.h"
+#include "app/route_drive.h"
 #include "maps/distance_field.h"
 #include "maps/error.h"
-#include "maps/zones.h"
 #include "sim/random.h"
 
 namespace rovigo::app {
 
 namespace {
 
-constexpr double kLowestObstacleM = 0.02;
-constexpr double kHeadroomM = 0.1;
 constexpr double kShortestM = 1.0;
 constexpr float kNearRecordedM = 1.0F;
 constexpr int kDraws = 200;
 
 maps::SavedMap true_map(const std::string& world, const RovigoConfig& config) {
   maps::SavedMap map;
-  map.grid = sim::true_grid(open_world(world), config.slam.grid.grid_resolution_m, kLowestObstacleM,
-                            config.robot.body_height_m + kHeadroomM);
+  map.grid = obstacle_grid(open_world(world), config);
   map.metadata.simulation = {.world = world, .world_from_map = TPose2D()};
   return map;
 }
@@ -34,33 +31,20 @@ PlannedTrack track_of(const planning::PlanResult& plan, std::shared_ptr<const ma
           std::move(map)};
 }
 
-/// How far every cell lies from where the recording went; 0 where there was none.
-maps::DistanceField distance_to_recorded(const maps::SavedMap& map) {
-  maps::OccupancyGrid way(map.grid.geometry, maps::OccupancyGrid::kFree);
-  for (const auto& stored : map.trajectory) {
-    const maps::Cell at =
-        way.geometry.cell_at(maps::position_of(TPose2D(stored.map_from_base.asTPose())));
-    if (way.geometry.contains(at)) way.at(at) = maps::OccupancyGrid::kOccupied;
-  }
-  if (map.trajectory.empty()) way.cells.assign(way.cells.size(), maps::OccupancyGrid::kOccupied);
-  return maps::distance_to_occupied(way);
-}
-
 /// Where the rover may stand, whichever way it faces, with the margin of drives; on a recorded map
-/// only near to where the recording went: what was seen from afar is mapped to 10 cm.
+/// only near to where the recording went: what was seen from afar is mapped less well.
 std::vector<TPoint2D> places_on(const maps::SavedMap& map, const RovigoConfig& config) {
   const maps::OccupancyGrid& grid = map.grid;
   const maps::DistanceField field = maps::distance_to_occupied(grid);
-  const maps::DistanceField recorded = distance_to_recorded(map);
+  const maps::DistanceField recorded = maps::distance_to_points(grid.geometry, recorded_way(map));
   const double room_m = config.robot.robot_radius_m + config.planning.drive_margin_m;
   std::vector<TPoint2D> places;
   for (int y = 0; y < grid.geometry.height; ++y) {
     for (int x = 0; x < grid.geometry.width; ++x) {
       const maps::Cell cell{x, y};
       if (!maps::OccupancyGrid::is_free(grid.at(cell))) continue;
-      if (static_cast<double>(field.at(cell)) < room_m || recorded.at(cell) > kNearRecordedM) {
-        continue;
-      }
+      if (static_cast<double>(field.at(cell)) < room_m) continue;
+      if (!map.trajectory.empty() && recorded.at(cell) > kNearRecordedM) continue;
       places.push_back(grid.geometry.center_of(cell));
     }
   }
@@ -99,10 +83,9 @@ std::shared_ptr<const maps::SavedMap> open_track_map(const TrackShape& shape,
   if (shape.map.empty()) {
     return std::make_shared<const maps::SavedMap>(true_map(shape.world, config));
   }
-  std::vector<std::string> warnings;  // what a whole map file has none of
-  auto map = std::make_shared<maps::SavedMap>(maps::load_any_map(folder / shape.map, warnings));
-  maps::apply_zones(map->grid, map->zones);
-  return map;
+  constexpr bool kAsJson = true;  // only what it warns of is said, on stderr
+  return std::make_shared<const maps::SavedMap>(
+      open_planning_map(folder / shape.map, Console(kAsJson)));
 }
 
 PlannedTrack plan_goal(const std::string& name, const TrackShape& shape,

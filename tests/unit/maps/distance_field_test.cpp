@@ -15,6 +15,13 @@ OccupancyGrid one_obstacle() {
   return grid;
 }
 
+TEST(DistanceField, ToPointsIsToTheCellsTheyLieIn) {
+  const OccupancyGrid grid = one_obstacle();
+  const TPoint2D inside{0.03, -0.42}, outside{9.0, 9.0}, no_number{NAN, 0.0};
+  EXPECT_EQ(distance_to_points(grid.geometry, {inside, outside, no_number}).meters,
+            distance_to_occupied(grid).meters);
+}
+
 TEST(DistanceField, ReachesToCellEdges) {
   const OccupancyGrid grid = one_obstacle();
   const DistanceField field = distance_to_occupied(grid);
