@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "maps/error.h"
 #include "maps/gaussian_blur.h"
@@ -168,15 +169,14 @@ Costmap inflate_reference(const OccupancyGrid& grid, double sigma_cells, MapMode
   check_sigma(sigma_cells);
   Costmap costmap(grid.geometry, Costmap::kFree);
   if (map_mode == MapMode::kEverything) return costmap;
-  std::vector<std::uint8_t> image(grid.cells.size());
   const bool unknown_blocks = map_mode == MapMode::kKnownFree;
-  std::transform(grid.cells.begin(), grid.cells.end(), image.begin(), [&](std::int8_t value) {
-    return static_cast<std::uint8_t>(value > 0 || (unknown_blocks && value < 0));
-  });
-  const std::vector<std::uint8_t> blurred =
-      blur_like_scipy(image, grid.geometry.width, grid.geometry.height, sigma_cells);
-  std::transform(blurred.begin(), blurred.end(), costmap.cells.begin(),
-                 [](std::uint8_t value) { return value ? Costmap::kLethal : Costmap::kFree; });
+  std::transform(grid.cells.begin(), grid.cells.end(), costmap.cells.begin(),
+                 [unknown_blocks](std::int8_t value) {
+                   return static_cast<std::uint8_t>(value > 0 || (unknown_blocks && value < 0));
+                 });
+  costmap.cells = blur_like_scipy(std::move(costmap.cells), grid.geometry.width,
+                                  grid.geometry.height, sigma_cells, BlurOutput::kPositive);
+  for (std::uint8_t& cell : costmap.cells) cell = cell ? Costmap::kLethal : Costmap::kFree;
   return costmap;
 }
 
