@@ -35,11 +35,18 @@ void Localizer::Impl::begin(double time_s) {
   if (!prior) return;
   motion.place(time_s, prior->map_from_base, prior_sigma_m, prior_sigma_rad);
   has_pose = true;
+  believe_prior();
+}
+
+/// Somebody says where it is: that is where frames are compared first, as surely as was said.
+void Localizer::Impl::believe_prior() {
+  state = State::kConfirming;
+  vouched = true;
 }
 
 void Localizer::Impl::believe_nothing() {
   state = State::kSearching;
-  was_sure = false;
+  was_sure = vouched = false;
   evidence = {};
   misses = 0;
   doubt = false;
@@ -104,7 +111,8 @@ void Localizer::Impl::on_frame(const CameraFrame& frame, FeatureSet features) {
   const bool is_new = finder.see(view.frame.time_s, odom_from_base(view.frame.time_s), view.scan,
                                  view.frame.depth, view.frame.depth_unit_m);
   const bool goes_on = continuity.follows(view.frame, odom_from_base(view.frame.time_s));
-  broken |= !goes_on || !motion.planar();
+  const bool is_first = frames == 1;  // goes on from what was said
+  broken |= (!goes_on && !(is_first && vouched)) || !motion.planar();
   const bool believed_before = state != State::kSearching;
   if (believed_before) follow(view);
   const bool just_lost = believed_before && state == State::kSearching;  // says so for a frame
@@ -121,6 +129,7 @@ void Localizer::Impl::on_frame(const CameraFrame& frame, FeatureSet features) {
   if (state == State::kConfirming && is_convincing()) {
     state = State::kTracking;
     was_sure = true;
+    vouched = false;
     prior.reset();  // it has done its work; from here on the map decides
   }
 }
