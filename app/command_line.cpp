@@ -122,6 +122,31 @@ void add_driving_commands(CLI::App& app, Action& chosen, bool& json) {
   drive->add_option("--report", d->report, "Write a report folder to open in a browser");
 }
 
+void add_dock_command(CLI::App& app, Action& chosen, bool& json) {
+  CLI::App* dock =
+      app.add_subcommand("dock", "Stop before an ArUco marker that the simulated camera sees");
+  auto d = bind(*dock, run_dock, chosen, json);
+  dock->footer(
+      "Speed comes from a PI whose integrator is switched on only near the dock. It helps against "
+      "a "
+      "steady hindrance (stiction, a slope against the rover); not where the hindrance pushes the "
+      "rover on, and not where it holds the rover outside docking.box_m.\n"
+      "  rovigo dock --world dock --report docking\n"
+      "  rovigo dock --world dock --set docking.box_m=100 --set docking.box_rate_m_s=100   a plain "
+      "PI");
+  dock->add_option("--world", d->world,
+                   "World with a marker: dock, another name in sim/worlds, or an SDF file")
+      ->required();
+  dock->add_option("--marker", d->marker, "The marker's id; default: the only one in the world")
+      ->check(CLI::Range(0, 49));
+  dock->add_option("--start", d->start,
+                   "X,Y[,YAW] in the world, facing the marker; default: where rovers are put down");
+  dock->add_option("--scenario", d->scenario,
+                   "Sensors, faults: a name in sim/scenarios or a YAML file");
+  dock->add_option("--seed", d->seed, "Seed of all noise");
+  dock->add_option("--report", d->report, "Write a report folder to open in a browser");
+}
+
 void add_track_command(CLI::App& app, Action& chosen, bool& json) {
   CLI::App* track =
       app.add_subcommand("track", "Repeatable trajectory-tracking tests in the simulator");
@@ -255,6 +280,7 @@ int run_command_line(int argc, const char* const* argv) {
   bool json = false;
   add_recording_commands(app, chosen, json);
   add_driving_commands(app, chosen, json);
+  add_dock_command(app, chosen, json);
   add_track_command(app, chosen, json);
   add_tuning_commands(app, chosen, json);
   add_file_commands(app, chosen, json);

@@ -34,6 +34,7 @@ void visit_sections(RovigoConfig& config,
   config.slam.describe(enter("slam"));
   config.planning.describe(enter("planning"));
   config.control.describe(enter("control"));
+  config.docking.describe(enter("docking"));
 }
 
 /// Gives every setting the value that was assigned to it, noting what does not fit.

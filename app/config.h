@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "control/control_config.h"
+#include "control/docking_config.h"
 #include "maps/inflation.h"
 #include "maps/robot_model.h"
 #include "planning/planner.h"
@@ -20,6 +21,7 @@ struct RovigoConfig {
   slam::SlamConfig slam;
   planning::PlannerConfig planning;
   control::ControlConfig control;
+  control::DockingConfig docking;
 };
 
 /// One setting as `rovigo config` shows it.

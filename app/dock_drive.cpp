@@ -6,102 +6,127 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/docking.h"
 #include "slam/marker_detector.h"
 
 namespace rovigo::app {
 
 namespace {
 
-constexpr double kNewSightingShare = 0.25;  // the rest is what the wheels made of the last ones
 constexpr double kBlindForS = 1.0;
+constexpr double kSightingSigmaM = 0.01;
 
-/// Where the rover is before the dock: sightings, carried on by the wheels.
-class DockEstimate {
+/// dock_from_base: the marker's place over the wheels' odometry, from all its sightings. Where it
+/// is shows in each of them. Which way it faces hardly shows from afar, and a sighting may mean two
+/// poses: a Kalman filter takes their mean, by how well each fits and stands upright, as being as
+/// uncertain as they are apart. (To take the one that faces as believed locks in on a first error.)
+class MarkerPoses final : public PoseSource {
  public:
-  void move(const TPose2D& odom_from_base) {
-    if (last_odometry_ && pose_) {
-      pose_ = maps::compose(*pose_, maps::compose(maps::inverse(*last_odometry_), odom_from_base));
+  MarkerPoses(const sim::SensorRig& rig, int marker_id, const control::DockingConfig& dock)
+      : rig_(rig), marker_id_(marker_id), dock_(dock) {}
+
+  void observe(const mrpt::obs::CObservation& observation) override {
+    time_s_ = mrpt::Clock::toDouble(observation.timestamp);
+    if (const auto* wheels = dynamic_cast<const mrpt::obs::CObservationOdometry*>(&observation)) {
+      move(TPose2D(wheels->odometry.asTPose()));
     }
-    last_odometry_ = odom_from_base;
-  }
-  void see(const TPose2D& seen, double time_s) {
-    last_seen_s_ = time_s;
-    if (!pose_) {
-      pose_ = seen;
-      return;
+    const auto* view = dynamic_cast<const mrpt::obs::CObservation3DRangeScan*>(&observation);
+    if (!view || !view->hasIntensityImage || !odom_from_base_) return;
+    for (const auto& s :
+         slam::find_markers(view->intensityImage.asCvMatRef(), rig_.camera, dock_.marker_side_m)) {
+      if (s.id == marker_id_) see(s);
     }
-    pose_->x += kNewSightingShare * (seen.x - pose_->x);
-    pose_->y += kNewSightingShare * (seen.y - pose_->y);
-    pose_->phi =
-        maps::wrap_angle(pose_->phi + kNewSightingShare * maps::wrap_angle(seen.phi - pose_->phi));
   }
-  /// Nothing where it has not been seen for too long.
-  std::optional<TPose2D> pose(double now_s) const {
-    return pose_ && now_s - last_seen_s_ <= kBlindForS ? pose_ : std::nullopt;
+  control::PoseInput pose(double /*now_s*/) override {
+    if (sightings_ == 0) return {time_s_, TPose2D(), 0.0, control::PoseQuality::kLost};
+    const TPose2D odom_from_dock =
+        maps::compose(odom_from_face_, {dock_.standoff_m, 0.0, maps::kPi});
+    const bool blind = time_s_ - last_seen_s_ > kBlindForS;
+    return {time_s_, maps::compose(maps::inverse(odom_from_dock), *odom_from_base_),
+            kSightingSigmaM, blind ? control::PoseQuality::kLost : control::PoseQuality::kGood};
   }
-  TPose2D last() const { return pose_.value_or(TPose2D()); }
+  int sightings() const { return sightings_; }
 
  private:
-  std::optional<TPose2D> pose_, last_odometry_;
+  void move(const TPose2D& odom_from_base) {
+    constexpr double kTurnError = 0.05;
+    if (odom_from_base_) {
+      const double turn = maps::wrap_angle(odom_from_base.phi - odom_from_base_->phi);
+      yaw_variance_ += kTurnError * kTurnError * turn * turn;
+    }
+    odom_from_base_ = odom_from_base;
+  }
+
+  void see(const slam::MarkerSighting& sighting) {
+    constexpr double kNewPlaceShare = 0.25, kCornerPx = 0.4, kDriftRad2 = 2e-5;  // a sighting
+    const TPose2D one = face_of(sighting.camera_from_marker);
+    const TPose2D other = face_of(sighting.other_camera_from_marker);
+    const double distance = sighting.camera_from_marker.norm();
+    // Perspective makes the far edge shorter: by so much less, the farther and smaller it is.
+    const double sigma =
+        std::max(0.005, kCornerPx * distance * distance /
+                            (rig_.camera.fx() * dock_.marker_side_m * dock_.marker_side_m));
+    const auto likelihood = [&](const mrpt::poses::CPose3D& pose, double rms_px) {
+      const double lean = lean_of(pose) / (0.03 + sigma), misfit = 2.0 * rms_px / kCornerPx;
+      return std::exp(-(lean * lean + misfit * misfit) / 2.0);
+    };
+    const double p_one = likelihood(sighting.camera_from_marker, sighting.reprojection_rms_px);
+    const double p_other =
+        likelihood(sighting.other_camera_from_marker, sighting.other_reprojection_rms_px);
+    const double share = p_other / std::max(p_one + p_other, 1e-300);  // of the other pose
+    const double apart = maps::wrap_angle(other.phi - one.phi);
+    const double yaw = one.phi + share * apart;
+    const double variance = sigma * sigma + share * (1.0 - share) * apart * apart;
+
+    last_seen_s_ = time_s_;
+    yaw_variance_ += kDriftRad2;
+    const bool first = sightings_++ == 0;
+    const double place_share = first ? 1.0 : kNewPlaceShare;
+    const double yaw_share = first ? 1.0 : yaw_variance_ / (yaw_variance_ + variance);
+    TPose2D& face = odom_from_face_;
+    face = {face.x + place_share * (one.x - face.x), face.y + place_share * (one.y - face.y),
+            maps::wrap_angle(face.phi + yaw_share * maps::wrap_angle(yaw - face.phi))};
+    yaw_variance_ = first ? variance : (1.0 - yaw_share) * yaw_variance_;
+  }
+
+  TPose2D face_of(const mrpt::poses::CPose3D& camera_from_marker) const {
+    return maps::compose(*odom_from_base_,
+                         face_from_sighting(rig_.base_from_camera, camera_from_marker));
+  }
+  /// How far its face is from upright, radians.
+  double lean_of(const mrpt::poses::CPose3D& camera_from_marker) const {
+    const auto m = (rig_.base_from_camera + camera_from_marker).getRotationMatrix();
+    return std::asin(std::clamp(m(2, 2), -1.0, 1.0));
+  }
+
+  sim::SensorRig rig_;
+  int marker_id_;
+  control::DockingConfig dock_;
+  double time_s_ = 0.0;
+  std::optional<TPose2D> odom_from_base_;
+  TPose2D odom_from_face_;
+  double yaw_variance_ = 0.0;
   double last_seen_s_ = 0.0;
+  int sightings_ = 0;
 };
 
 }  // namespace
 
-TPose2D dock_from_sighting(const mrpt::poses::CPose3D& base_from_camera,
-                           const mrpt::poses::CPose3D& camera_from_marker, double standoff_m) {
+TPose2D face_from_sighting(const mrpt::poses::CPose3D& base_from_camera,
+                           const mrpt::poses::CPose3D& camera_from_marker) {
   const mrpt::poses::CPose3D base_from_marker = base_from_camera + camera_from_marker;
   const auto m = base_from_marker.getRotationMatrix();
-  const double nx = m(0, 2), ny = m(1, 2);  // the marker's normal; the floor keeps it level
-  const double level = std::max(std::hypot(nx, ny), 1e-9);
-  const TPose2D base_from_dock(base_from_marker.x() + standoff_m * nx / level,
-                               base_from_marker.y() + standoff_m * ny / level,
-                               std::atan2(-ny, -nx));
-  return maps::inverse(base_from_dock);
+  return {base_from_marker.x(), base_from_marker.y(), std::atan2(m(1, 2), m(0, 2))};
 }
 
-DockResult dock_on_marker(sim::Simulator& simulator, const DockRequest& request,
-                          const control::DockingConfig& config) {
-  control::DockingController controller(config);
-  DockEstimate estimate;
-  DockResult out;
-  TTwist2D command;
-  const double begin_s = simulator.time_s();
-  double next_step_s = begin_s;
-  const auto observe = [&](const mrpt::obs::CObservation& observation) {
-    if (const auto* wheels = dynamic_cast<const mrpt::obs::CObservationOdometry*>(&observation)) {
-      estimate.move(TPose2D(wheels->odometry.asTPose()));
-    }
-    const auto* view = dynamic_cast<const mrpt::obs::CObservation3DRangeScan*>(&observation);
-    if (!view || !view->hasIntensityImage) return;
-    const sim::SensorRig& rig = simulator.rig();
-    for (const auto& s :
-         slam::find_markers(view->intensityImage.asCvMatRef(), rig.camera, request.marker_side_m)) {
-      if (s.id != request.marker_id) continue;
-      ++out.sightings;
-      estimate.see(
-          dock_from_sighting(rig.base_from_camera, s.camera_from_marker, request.standoff_m),
-          simulator.time_s());
-    }
-  };
-  while (out.status == control::DockingStatus::kRunning &&
-         simulator.time_s() - begin_s < request.longest_s) {
-    simulator.step(command);
-    for (const auto& o : simulator.take_observations()) observe(*o);
-    if (simulator.time_s() + 1e-9 < next_step_s) continue;
-    next_step_s += config.along.sample_time_s;
-    command = {};
-    if (const auto at = estimate.pose(simulator.time_s())) {
-      const control::DockingOutput step = controller.step(*at);
-      command = step.command;
-      out.status = step.status;
-    }
-  }
-  for (int i = 0; i < 120; ++i) simulator.step({});  // until it stands
-  out.seen = out.sightings > 0;
+DockDrive dock_on_marker(sim::Simulator& simulator, const TPose2D& world_from_dock, int marker_id,
+                         const RovigoConfig& config, const DriveHooks& hooks) {
+  MarkerPoses poses(simulator.rig(), marker_id, config.docking);
+  control::DockingController controller(config.docking, config.control, config.robot);
+  DockDrive out;
+  out.log = drive_in_simulator(simulator, world_from_dock, poses, controller, 0.0, config, hooks);
+  out.sightings = poses.sightings();
   out.attempts = controller.attempts();
-  out.duration_s = simulator.time_s() - begin_s;
-  out.dock_from_base = estimate.last();
   return out;
 }
 

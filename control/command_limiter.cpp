@@ -45,13 +45,15 @@ TTwist2D limited_command(const TTwist2D& desired, const TTwist2D& last, double d
   const double yaw_rate_wanted = std::clamp(usable ? desired.omega : 0.0,
                                             -limits.max_yaw_rate_rad_s, limits.max_yaw_rate_rad_s);
   const double speed_wanted =
-      std::clamp(usable ? desired.vx : 0.0, 0.0,
+      std::clamp(usable ? desired.vx : 0.0,
+                 -std::min(limits.max_reverse_speed_m_s, speed_left(yaw_rate_wanted, limits)),
                  std::min(limits.max_speed_m_s, speed_left(yaw_rate_wanted, limits)));
 
   double speed = slewed(last.vx, speed_wanted, limits.max_acceleration_m_s2 * dt);
-  if (speed > last.vx) {  // speeding up must not take the rim speed that turning uses now
-    speed = std::max(last.vx, std::min(speed, speed_left(last.omega, limits)));
-  }
+  // Speeding up must not take the rim speed that turning uses now.
+  const double left = speed_left(last.omega, limits);
+  if (speed > last.vx) speed = std::max(last.vx, std::min(speed, left));
+  if (speed < last.vx) speed = std::min(last.vx, std::max(speed, -left));
   double yaw_rate = slewed(last.omega, yaw_rate_wanted, limits.max_yaw_acceleration_rad_s2 * dt);
   const double most = yaw_rate_left(speed, limits);
   yaw_rate = std::clamp(yaw_rate, -most, most);

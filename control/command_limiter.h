@@ -9,6 +9,7 @@ namespace rovigo::control {
 
 struct DriveLimits {
   double max_speed_m_s = 0.4;
+  double max_reverse_speed_m_s = 0.0;  ///< trajectories are driven forwards only
   double max_yaw_rate_rad_s = 1.0;
   double max_wheel_speed_m_s = 0.9;
   double track_width_m = 0.358;
@@ -18,9 +19,9 @@ struct DriveLimits {
 
 DriveLimits drive_limits(const ControlConfig& config, const maps::RobotModel& robot);
 
-/// `desired` made drivable: forward only, within every limit, and reachable from `last` within
-/// `dt_s`. Where both cannot be had, turning comes before speed, so that the path is kept.
-/// Precondition: `last` is within the limits. A desire that is not finite counts as standstill.
+/// `desired` made drivable: within every limit, and reachable from `last` within `dt_s`. Where both
+/// cannot be had, turning comes before speed, so that the path is kept. Precondition: `last` is
+/// within the limits. A desire that is not finite counts as standstill.
 TTwist2D limited_command(const TTwist2D& desired, const TTwist2D& last, double dt_s,
                          const DriveLimits& limits);
 

@@ -1,5 +1,6 @@
 #include "slam/marker_detector.h"
 
+#include <cmath>
 #include <opencv2/aruco.hpp>
 #include <opencv2/calib3d.hpp>
 
@@ -24,7 +25,7 @@ mrpt::poses::CPose3D pose_of(const cv::Mat& rotation, const cv::Mat& translation
 
 std::vector<MarkerSighting> find_markers(const cv::Mat& image, const mrpt::img::TCamera& camera,
                                          double side_m) {
-  if (image.empty() || !(side_m > 0.0)) return {};
+  if (image.empty() || !(side_m > 0.0) || !std::isfinite(side_m)) return {};
   auto parameters = cv::aruco::DetectorParameters::create();
   parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_SUBPIX;
   std::vector<int> ids;
@@ -44,7 +45,8 @@ std::vector<MarkerSighting> find_markers(const cv::Mat& image, const mrpt::img::
     cv::solvePnPGeneric(square, corners[i], intrinsics, distortion, rotations, translations, false,
                         cv::SOLVEPNP_IPPE_SQUARE, cv::noArray(), cv::noArray(), errors);
     if (rotations.empty() || !(errors.front() <= kMostReprojectionPx)) continue;
-    out.push_back({ids[i], pose_of(rotations.front(), translations.front()), errors.front()});
+    out.push_back({ids[i], pose_of(rotations.front(), translations.front()), errors.front(),
+                   pose_of(rotations.back(), translations.back()), errors.back()});
   }
   return out;
 }

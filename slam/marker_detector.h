@@ -15,12 +15,14 @@ struct MarkerSighting {
   /// The marker's frame: origin in its middle, x to its right, y up, z out of its face.
   mrpt::poses::CPose3D camera_from_marker;
   double reprojection_rms_px = 0.0;
+  /// A square seen nearly face on from afar has two poses that fit about as well: the other one,
+  /// mirrored in the line of sight. Near by (50 px and more across) the first is the right one.
+  mrpt::poses::CPose3D other_camera_from_marker;
+  double other_reprojection_rms_px = 0.0;
 };
 
-/// `image`: grey or BGR, 8 bits. `side_m`: of the black square, the same for all markers. A square
-/// seen nearly face on has two poses that fit about as well; the better one is given, and near by
-/// (50 px and more across) it is the right one. Nothing for an empty image or a side that is not
-/// positive.
+/// `image`: grey or BGR, 8 bits. `side_m`: of the black square, the same for all markers. Nothing
+/// for an empty image, or a side that is no positive number.
 std::vector<MarkerSighting> find_markers(const cv::Mat& image, const mrpt::img::TCamera& camera,
                                          double side_m);
 

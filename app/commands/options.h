@@ -79,6 +79,15 @@ struct DriveOptions : CommonOptions {
   std::optional<std::filesystem::path> report;
 };
 
+struct DockOptions : CommonOptions {
+  std::string world;
+  std::optional<int> marker;
+  std::optional<std::string> start;
+  std::string scenario = "default";
+  std::uint64_t seed = 1;
+  std::optional<std::filesystem::path> report;
+};
+
 struct TrackOptions : CommonOptions {
   std::string suite = "default";
   std::optional<std::string> pose;  ///< perturbed or truth, instead of what the suite says
@@ -140,6 +149,7 @@ int run_localize(const LocalizeOptions& options);
 int run_info(const InfoOptions& options);
 int run_plan(const PlanOptions& options);
 int run_drive(const DriveOptions& options);
+int run_dock(const DockOptions& options);
 int run_track(const TrackOptions& options);
 int run_tune(const TuneOptions& options);
 int run_identify(const IdentifyOptions& options);

@@ -55,6 +55,7 @@ TEST(CommandLine, EveryCommandHasHelp) {
                                                        {"info"},
                                                        {"plan"},
                                                        {"drive"},
+                                                       {"dock"},
                                                        {"tune"},
                                                        {"identify"},
                                                        {"export"},
