@@ -38,7 +38,7 @@ std::vector<float> signed_meters(const maps::OccupancyGrid& grid) {
 }
 
 PlanarCost linearize(const SignedDistanceField& field, const std::vector<ScanPoint>& scan,
-                     const TPose2D& pose) {
+                     const TPose2D& pose, double surface_depth_m) {
   PlanarCost out;
   for (const ScanPoint& p : scan) {
     const TPoint2D map_point = maps::transform(pose, p.base_point);
@@ -46,7 +46,8 @@ PlanarCost linearize(const SignedDistanceField& field, const std::vector<ScanPoi
     if (!sample.known) continue;
     ++out.points;
     const double variance = p.sigma_m * p.sigma_m + kGridSigmaM * kGridSigmaM;
-    const double normalized = sample.meters / std::sqrt(variance);
+    const double off_m = sample.meters + surface_depth_m;
+    const double normalized = off_m / std::sqrt(variance);
     out.inliers += std::abs(normalized) < kInlierSigmas;
     const double ratio = normalized / kCauchyScale;
     const double weight = kIndependentShare / (variance * (1.0 + ratio * ratio));
@@ -54,7 +55,7 @@ PlanarCost linearize(const SignedDistanceField& field, const std::vector<ScanPoi
     const Eigen::Vector3d jacobian(sample.gradient.x(), sample.gradient.y(),
                                    sample.gradient.dot(arm));
     out.information += weight * jacobian * jacobian.transpose();
-    out.gradient += weight * sample.meters * jacobian;
+    out.gradient += weight * off_m * jacobian;
   }
   return out;
 }
@@ -141,9 +142,10 @@ std::vector<ScanPoint> obstacle_points(const cv::Mat& depth, double unit_m,
 }
 
 GridMatch match_scan(const SignedDistanceField& field, const std::vector<ScanPoint>& scan,
-                     const TPose2D& prior, const Eigen::Matrix3d& prior_covariance) {
+                     const TPose2D& prior, const Eigen::Matrix3d& prior_covariance,
+                     double surface_depth_m) {
   const PlanarFit fit = fit_planar(prior, prior_covariance, kIterations, [&](const TPose2D& pose) {
-    return linearize(field, scan, pose);
+    return linearize(field, scan, pose, surface_depth_m);
   });
   GridMatch match;
   match.look = fit.look;

@@ -33,6 +33,8 @@ class SignedDistanceField {
   };
   /// Bilinear between cell centres.
   Sample at(const TPoint2D& point) const;
+  /// How far behind its cell's edge a mapped surface lies, on average.
+  double mapped_surface_depth_m() const { return 0.5 * geometry_.resolution_m; }
 
   /// Of the cell the point lies in: metres to the nearest obstacle's edge (0 inside one, infinity
   /// outside the grid), and whether it has been seen.
@@ -70,7 +72,10 @@ std::vector<ScanPoint> obstacle_points(const cv::Mat& depth, double unit_m,
                                        const SlamConfig& config);
 
 /// Gauss-Newton from the prior pose; the prior holds the directions the scan says nothing about.
+/// `surface_depth_m`: how far behind the edge of an occupied cell its surface lies. Half a cell
+/// where cells are marked for what was seen somewhere in them, 0 where they are walls themselves.
 GridMatch match_scan(const SignedDistanceField& field, const std::vector<ScanPoint>& scan,
-                     const TPose2D& prior, const Eigen::Matrix3d& prior_covariance);
+                     const TPose2D& prior, const Eigen::Matrix3d& prior_covariance,
+                     double surface_depth_m = 0.0);
 
 }  // namespace rovigo::slam

@@ -1,6 +1,7 @@
 // Following a place from frame to frame: the view against the map around the pose believed.
 
 #include <algorithm>
+#include <cmath>
 
 #include "slam/localizer_impl.h"
 
@@ -16,7 +17,9 @@ constexpr double kHeldScanShare = 0.75;   // of one view, to hold a pose by it a
 constexpr std::size_t kEnoughScan = 40;   // points of it,
 constexpr int kEnoughOnMap = 20;          // and of them on ground the map knows
 constexpr double kNewShare = 0.1;         // of the local scan, from one frame to the next
-constexpr double kKeptInliers = 0.98;     // a frame, rounded down; half is left after a second
+constexpr double kSeenShare = 0.3;        // of a step that the views saw and the wheels did not
+constexpr double kMostUnseenStepM = 0.1, kMostUnseenStepRad = 0.05;  // in a frame: slip
+constexpr double kKeptInliers = 0.98;  // a frame, rounded down; half is left after a second
 
 }  // namespace
 
@@ -33,7 +36,42 @@ void Localizer::Impl::follow(const SeenView& view) {
       return;
     }
   }
+  move_as_seen(view);
+  const Se3 moved = believed(view.frame.time_s);
   if (!hold_by_scan(view, local.landmarks)) miss(view, local.landmarks, prediction);
+  leave_trail(view, moved);
+}
+
+/// Where the map does not know the view, the views of a moment ago say how far the wheels are off.
+void Localizer::Impl::move_as_seen(const SeenView& view) {
+  if (broken || !motion.planar() || motion.dead_reckoning().standing()) return;
+  const double time_s = view.frame.time_s;
+  const auto seen = trail.locate(view, motion.predict(time_s));
+  if (!seen) return;
+  const TPose2D here = to_planar(believed(time_s));
+  const TPose2D step = maps::compose(maps::inverse(here), to_planar(*seen));
+  if (std::hypot(step.x, step.y) > kMostUnseenStepM || std::abs(step.phi) > kMostUnseenStepRad) {
+    return;
+  }
+  // Views scatter from frame to frame: part of the step now, the rest with the next ones. The
+  // filter's covariance stays that of the wheels, so that nothing is believed twice.
+  const Se3 part = from_planar({kSeenShare * step.x, kSeenShare * step.y, kSeenShare * step.phi});
+  for (MotionModel* model : {&motion, &odometry}) {
+    const Se3 pose = model->predict(time_s).prior.map_from_base;
+    model->shift(pose * part * pose.inverse());
+  }
+}
+
+/// What the frame said of the place moves the trail along, and the frame joins it. `before`: where
+/// the rover was believed before that.
+void Localizer::Impl::leave_trail(const SeenView& view, const Se3& before) {
+  if (state == State::kSearching || broken || !motion.planar()) {
+    trail.clear();
+    return;
+  }
+  const Se3 after = believed(view.frame.time_s);
+  trail.shift(after * before.inverse());
+  trail.keep(view, after);
 }
 
 /// Where the map knows no features, or not from this side, its walls still hold the pose.
@@ -49,7 +87,8 @@ bool Localizer::Impl::hold_by_scan(const SeenView& view, const std::vector<int>&
   if (std::count_if(view.scan.begin(), view.scan.end(), known) < kEnoughOnMap) return false;
   // One wall leaves much open; what was seen a moment ago, around a corner, does not.
   GridMatch match = match_scan(finder.field(), finder.local_scan(), to_planar(pose),
-                               motion.dead_reckoning().pose_covariance());
+                               motion.dead_reckoning().pose_covariance(),
+                               finder.field().mapped_surface_depth_m());
   match.look.information *= kNewShare;
   match.look.gradient *= kNewShare;
   const Se3 held = from_planar(match.look.map_from_base);
@@ -64,6 +103,7 @@ bool Localizer::Impl::hold_by_scan(const SeenView& view, const std::vector<int>&
 void Localizer::Impl::take_in(const SeenView& view, const TrackResult& result,
                               const ViewCheck& seen) {
   motion.correct(view.frame.time_s, result.solution);
+  trail.clear();
   tracked.clear();
   for (const FeatureMatch& m : result.matches) tracked.push_back(m.landmark);
   note_agreement(view.frame.time_s, checker.telling(result.matches), seen);

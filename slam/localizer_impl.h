@@ -12,6 +12,7 @@
 #include "slam/view_check.h"
 #include "slam/view_continuity.h"
 #include "slam/view_slide.h"
+#include "slam/view_trail.h"
 
 namespace rovigo::slam {
 
@@ -31,7 +32,8 @@ struct Localizer::Impl {
         relocalizer(map),
         checker(map, finder.has_grid() ? &finder.field() : nullptr,
                 relocalizer.repeated_landmarks(map), motion.planar()),
-        slide(map) {}
+        slide(map),
+        trail(map) {}
 
   void expect_near(const PosePrior& given);
   void begin(double time_s);
@@ -48,6 +50,8 @@ struct Localizer::Impl {
   void adopt(double time_s, const Se3& map_from_base);
   bool hold_by_scan(const SeenView& view, const std::vector<int>& local_landmarks);
   void follow(const SeenView& view);
+  void move_as_seen(const SeenView& view);
+  void leave_trail(const SeenView& view, const Se3& before);
   void take_in(const SeenView& view, const TrackResult& result, const ViewCheck& seen);
   void note_agreement(double time_s, int inliers, const ViewCheck& seen);
   void miss(const SeenView& view, const std::vector<int>& local_landmarks,
@@ -75,6 +79,7 @@ struct Localizer::Impl {
   Relocalizer relocalizer;
   ViewChecker checker;
   ViewSlide slide;
+  ViewTrail trail;
   std::optional<PoseRegion> prior;
   double prior_sigma_m = 0.0, prior_sigma_rad = 0.0;
   bool vouched = false;  ///< the prior speaks for the pose believed, or for the view known there

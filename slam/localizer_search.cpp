@@ -120,6 +120,7 @@ bool Localizer::Impl::fits_as_well(double time_s, const Se3& here, const Slide& 
 
 /// The same room, but matched one brick too far.
 void Localizer::Impl::step_aside(double time_s, const Se3& map_from_base) {
+  trail.clear();
   motion.place(time_s, map_from_base, kFixSigmaM, kFixSigmaRad);
   state = State::kConfirming;
   evidence.agreeing_frames = 0;
@@ -150,6 +151,7 @@ void Localizer::Impl::judge_places(const SeenView& view, bool is_new) {
   }
   if (there && evidence.inliers == 0 && best->scan_share > evidence.scan_share + kBetterHeld &&
       within_reach(time_s, place)) {
+    trail.clear();
     motion.place(time_s, place, kFixSigmaM, kFixSigmaRad);
   }
   if (there || (matches_here() && best->recognitions <= evidence.recognitions)) return;
@@ -176,6 +178,7 @@ bool Localizer::Impl::matches_here() const {
 }
 
 void Localizer::Impl::adopt(double time_s, const Se3& map_from_base) {
+  trail.clear();
   motion.place(time_s, map_from_base, kFixSigmaM, kFixSigmaRad);
   has_pose = true;
   state = State::kConfirming;

@@ -124,7 +124,8 @@ void PlaceFinder::refine(PlaceCandidate& candidate, const Se3& odom_from_base) c
   const TPose2D before = to_planar(candidate.map_from_odom * odom_from_base);
   const Eigen::Vector3d sigma(kPlaceSigmaM, kPlaceSigmaM, kPlaceSigmaRad);
   const GridMatch match =
-      match_scan(*field_, points_, before, sigma.cwiseAbs2().asDiagonal().toDenseMatrix());
+      match_scan(*field_, points_, before, sigma.cwiseAbs2().asDiagonal().toDenseMatrix(),
+                 field_->mapped_surface_depth_m());
   const TPose2D after = match.look.map_from_base;
   const double share_before = scan_agreement(*field_, points_, before).share;
   const double share_after = scan_agreement(*field_, points_, after).share;

@@ -9,13 +9,15 @@ namespace {
 
 using maps::OccupancyGrid;
 
-/// Walls one cell thick around [0, width] x [0, height] metres, free inside.
-OccupancyGrid room(double width_m, double height_m) {
-  const int w = static_cast<int>(std::lround(width_m / 0.05)) + 2;
-  const int h = static_cast<int>(std::lround(height_m / 0.05)) + 2;
-  OccupancyGrid grid({0.05, {-0.05, -0.05}, w, h}, OccupancyGrid::kFree);
-  for (int x = 0; x < w; ++x) grid.at({x, 0}) = grid.at({x, h - 1}) = OccupancyGrid::kOccupied;
-  for (int y = 0; y < h; ++y) grid.at({0, y}) = grid.at({w - 1, y}) = OccupancyGrid::kOccupied;
+/// Walls so many cells thick around [0, width] x [0, height] metres, free inside.
+OccupancyGrid room(double width_m, double height_m, int thick = 1) {
+  const int w = static_cast<int>(std::lround(width_m / 0.05));
+  const int h = static_cast<int>(std::lround(height_m / 0.05));
+  OccupancyGrid grid({0.05, {-0.05 * thick, -0.05 * thick}, w + 2 * thick, h + 2 * thick},
+                     OccupancyGrid::kOccupied);
+  for (int y = 0; y < h; ++y) {
+    for (int x = 0; x < w; ++x) grid.at({x + thick, y + thick}) = OccupancyGrid::kFree;
+  }
   return grid;
 }
 
@@ -59,6 +61,28 @@ TEST(GridMatch, ALongWallSaysNothingAboutTheWayAlongIt) {
   EXPECT_NEAR(match.look.map_from_base.x, prior.x, 1e-3);  // left where the wheels put it
   EXPECT_NEAR(match.look.map_from_base.y, truth.y, 0.01);
   EXPECT_LT(match.look.information(0, 0), 1e-3 * match.look.information(1, 1));
+}
+
+// A map marks the cells that surfaces lie in; their edges stand up to a cell before those.
+TEST(GridMatch, SurfacesSomewhereInTheirCellsGiveNoBias) {
+  const SignedDistanceField field(room(4.0, 3.0, 3));
+  const double depth_m = field.mapped_surface_depth_m();
+  EXPECT_DOUBLE_EQ(depth_m, 0.025);
+  const TPose2D truth(2.2, 1.7, 0.7);
+  // The camera meets the middles of the cells around the room, as of a room that is larger.
+  TPose2D in_larger = truth;
+  in_larger.x += depth_m;
+  in_larger.y += depth_m;
+  const auto scan = scan_in_room(in_larger, 4.0 + 2.0 * depth_m, 3.0 + 2.0 * depth_m);
+  const TPose2D prior(2.24, 1.66, 0.72);
+  const auto error_m = [&](double surface_depth_m) {
+    const TPose2D found =
+        match_scan(field, scan, prior, prior_covariance(0.2, 0.1), surface_depth_m)
+            .look.map_from_base;
+    return maps::distance(maps::position_of(found), maps::position_of(truth));
+  };
+  EXPECT_LT(error_m(depth_m), 0.01);
+  EXPECT_GT(error_m(0.0), 0.02);
 }
 
 TEST(GridMatch, ADifferentRoomIsNotAgreedWith) {
