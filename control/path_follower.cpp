@@ -22,6 +22,7 @@ constexpr double kIntegralShare = 0.3;    ///< the speed integral's authority; n
 // A steady cross-track error is taken out over this way, or this time where that is longer; by
 // aiming at most this far beside the path.
 constexpr double kDriftLengthM = 1.0, kDriftTimeS = 3.0, kMostDriftM = 0.03;
+constexpr double kSlowestCrabMS = 0.1, kMostCrabRad = 0.3;
 constexpr SearchWindow kResumeWindow{.back_m = 0.5, .ahead_m = 1.0};
 
 PiGains heading_gains(const ControlConfig& c) {
@@ -130,6 +131,15 @@ void PathFollower::learn_drift(double cross_track_m, const FollowInput& in) {
   drift_m_ = std::clamp(drift_m_ + error * rate * dt, -kMostDriftM, kMostDriftM);
 }
 
+/// Where the floor slides the rover aside, it has to point against that.
+double PathFollower::crab(double path_heading, double remaining, const FollowInput& in) const {
+  const double aside =
+      in.side_drift_m_s.y * std::cos(path_heading) - in.side_drift_m_s.x * std::sin(path_heading);
+  const double angle = -aside / std::max(in.twist.vx, kSlowestCrabMS);
+  return std::clamp(angle, -kMostCrabRad, kMostCrabRad) *
+         std::clamp(remaining / kFadeBeforeStopM, 0.0, 1.0);
+}
+
 FollowOutput PathFollower::drive(const Leg& leg, const FollowInput& in) {
   const PathPlace place = legs_.project(maps::position_of(in.pose), leg, arc_m_, SearchWindow{});
   arc_m_ = std::min(place.arc_m, legs_.end_arc_m(leg));
@@ -150,7 +160,8 @@ FollowOutput PathFollower::drive(const Leg& leg, const FollowInput& in) {
   }
   learn_drift(place.cross_track_m, in);
   const Approach to_path = approach(place, out.heading_error_rad, remaining, in.twist.vx);
-  const double error = wrap_angle(out.heading_error_rad + to_path.heading);
+  const double error =
+      wrap_angle(out.heading_error_rad + to_path.heading + crab(place.pose.phi, remaining, in));
   if (must_turn_first(error)) {
     pace_ = 0.0;
     speed_pi_.reset();

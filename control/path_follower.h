@@ -21,6 +21,8 @@ struct FollowInput {
   double speed_cap_m_s = 0.0;
   double turn_gain = 1.0;      ///< real turn per commanded turn, > 0
   double dead_zone_m_s = 0.0;  ///< rim speed that a standing wheel needs to start
+  TPoint2D side_drift_m_s{0.0,
+                          0.0};  ///< over the map; the rover slides with what lies along its axles
 };
 
 struct FollowOutput {
@@ -60,7 +62,8 @@ class PathFollower {
   bool must_turn_first(double error);
   double approach_gain(double speed) const;
   void learn_drift(double cross_track_m, const FollowInput& in);
-  double way_back(const TPose2D& place, const FollowInput& in) const;
+  double hold_place(const Leg& leg, double turn_rate, const FollowInput& in) const;
+  double crab(double path_heading, double remaining, const FollowInput& in) const;
   Approach approach(const PathPlace& place, double heading_error, double remaining,
                     double speed) const;
   double wanted_speed(const Leg& leg, const PathPlace& place, double heading_error,
