@@ -14,6 +14,8 @@
 
 namespace rovigo::control {
 
+inline constexpr double kTurnBackSpeedMS = 0.08;  ///< turns in place return to their place so fast
+
 struct FollowInput {
   TPose2D pose;       ///< estimated, at the time the command takes effect
   TTwist2D twist;     ///< modelled, now
@@ -61,7 +63,6 @@ class PathFollower {
   bool has_arrived(const Leg& leg, double remaining) const;
   bool must_turn_first(double error);
   double approach_gain(double speed) const;
-  void learn_drift(double cross_track_m, const FollowInput& in);
   double hold_place(const Leg& leg, double turn_rate, const FollowInput& in) const;
   double crab(double path_heading, double remaining, const FollowInput& in) const;
   Approach approach(const PathPlace& place, double heading_error, double remaining,
@@ -85,7 +86,6 @@ class PathFollower {
   double arc_m_ = 0.0;
   double rest_time_s_ = 0.0;  ///< spent at the end of the leg
   bool turning_first_ = false;
-  double drift_m_ = 0.0;  ///< integral of the cross-track error over the way, per its length
 };
 
 }  // namespace rovigo::control

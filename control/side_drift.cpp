@@ -6,7 +6,8 @@
 namespace rovigo::control {
 namespace {
 
-constexpr double kTimeS = 3.0;             ///< long against pose noise, short against a drive
+constexpr double kFirstTimeS = 1.5,
+                 kTimeS = 6.0;             ///< long against pose noise, short against a drive
 constexpr double kMostInnovationM = 0.02;  ///< more is a slip, or an outlier
 
 }  // namespace
@@ -17,7 +18,8 @@ void SideDriftEstimator::add(const TPose2D& measured, const TPose2D& predicted, 
   const double nx = -std::sin(predicted.phi), ny = std::cos(predicted.phi);
   const double aside = std::clamp((measured.x - predicted.x) * nx + (measured.y - predicted.y) * ny,
                                   -kMostInnovationM, kMostInnovationM);
-  const double gain = share / kTimeS;
+  rolled_s_ = std::min(rolled_s_ + moved_s, kTimeS);
+  const double gain = share / std::max(rolled_s_, kFirstTimeS);
   drift_.x += gain * aside * nx;
   drift_.y += gain * aside * ny;
   const double size = std::hypot(drift_.x, drift_.y);

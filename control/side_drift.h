@@ -19,6 +19,7 @@ class SideDriftEstimator {
 
  private:
   TPoint2D drift_{0.0, 0.0};
+  double rolled_s_ = 0.0;
 };
 
 }  // namespace rovigo::control

@@ -31,7 +31,6 @@ DriveModel drive_model(const ControlConfig& config, const maps::RobotModel& robo
 
 /// Only turns in place go backwards, to keep their place.
 DriveLimits tracking_limits(const ControlConfig& config, const maps::RobotModel& robot) {
-  constexpr double kTurnBackSpeedMS = 0.08;
   DriveLimits limits = drive_limits(config, robot);
   limits.max_reverse_speed_m_s = std::min(kTurnBackSpeedMS, limits.max_speed_m_s);
   return limits;
