@@ -16,8 +16,8 @@ constexpr double kCellM = 0.10;
 }  // namespace
 
 bool LocalScan::add(double time_s, const TPose2D& odom_from_base,
-                    const std::vector<ScanPoint>& scan) {
-  if (!views_.empty()) {
+                    const std::vector<ScanPoint>& scan, bool jumped) {
+  if (!views_.empty() && !jumped) {
     const TPose2D& last = views_.back().odom_from_base;
     const bool moved =
         maps::distance(maps::position_of(last), maps::position_of(odom_from_base)) > kStepM ||
@@ -29,6 +29,10 @@ bool LocalScan::add(double time_s, const TPose2D& odom_from_base,
     views_.pop_front();
   }
   return true;
+}
+
+void LocalScan::forget_before(double time_s) {
+  while (!views_.empty() && views_.front().time_s < time_s) views_.pop_front();
 }
 
 std::vector<ScanPoint> LocalScan::points(const TPose2D& odom_from_base) const {

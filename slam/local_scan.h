@@ -13,9 +13,12 @@ namespace rovigo::slam {
 class LocalScan {
  public:
   /// Takes a scan (in base_link) made at `odom_from_base`, unless the rover has hardly moved since
-  /// the last one taken. True if it was taken.
-  bool add(double time_s, const TPose2D& odom_from_base, const std::vector<ScanPoint>& scan);
+  /// the last one taken; one that does not go on from it (`jumped`) is taken in any case. True if
+  /// it was taken.
+  bool add(double time_s, const TPose2D& odom_from_base, const std::vector<ScanPoint>& scan,
+           bool jumped = false);
   void clear() { views_.clear(); }
+  void forget_before(double time_s);
 
   /// All points in base_link at `odom_from_base`, one per 10 cm square: near surfaces are sampled
   /// densely and would outvote the far ones. Ordered by place, whatever the order of adding.

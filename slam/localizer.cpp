@@ -48,10 +48,11 @@ void Localizer::Impl::believe_nothing() {
   tracked.clear();
 }
 
-/// The rover was carried: what was seen before belongs to another place.
-void Localizer::Impl::lose() {
+/// The rover was carried: what was seen before the view last jumped belongs to another place, and
+/// so does everything while it is being carried.
+void Localizer::Impl::lose(double time_s) {
   believe_nothing();
-  finder.clear();
+  finder.clear_before(motion.carried() ? time_s : jumped_s);
 }
 
 /// A guess seems wrong: nobody carried the rover, so what was seen on the way stays true. It is
@@ -101,10 +102,12 @@ void Localizer::Impl::on_frame(const CameraFrame& frame, FeatureSet features) {
   }
   finder.fade();
   if (!motion.planar()) finder.forget_candidates();  // nothing ties one view to the next
-  const bool is_new = finder.see(view.frame.time_s, odom_from_base(view.frame.time_s), view.scan,
-                                 view.frame.depth, view.frame.depth_unit_m);
   const bool goes_on = continuity.follows(view.frame, odom_from_base(view.frame.time_s));
+  if (!goes_on) jumped_s = frame.time_s;
+  const bool jumps = !goes_on && !broken;  // once: a view that tells nothing never goes on
   broken |= !goes_on || !motion.planar();
+  const bool is_new = finder.see(view.frame.time_s, odom_from_base(view.frame.time_s), view.scan,
+                                 view.frame.depth, view.frame.depth_unit_m, jumps);
   const bool believed_before = state != State::kSearching;
   if (believed_before) follow(view);
   const bool just_lost = believed_before && state == State::kSearching;  // says so for a frame

@@ -14,6 +14,9 @@ constexpr double kRightM = 0.20, kRightRad = 10.0 * maps::kPi / 180.0;
 constexpr double kMostFrames = 30.0;  // more of them add nothing: they share their errors
 constexpr double kMostRecognitions = 6.0;
 constexpr double kMostTellingPoints = 10.0;
+// Of features and shape together: enough of each.
+constexpr double kJointInliers = 20.0, kFewScanPoints = 40.0, kJointPoints = 60.0;
+constexpr double kJointMargin = 0.02, kJointRival = 0.3;
 
 /// Points of the scan that this place explains and the best other one does not, less those that it
 /// does not explain itself: a small margin says more the more points it comes from.
@@ -22,10 +25,22 @@ double telling_points(const LocalizerEvidence& e) {
   return std::clamp(points, 0.0, kMostTellingPoints);
 }
 
+/// Textures repeat, and so do rooms, but hardly both in the same way: where features match and a
+/// scan of many points fits no other place as well, the two together say more than their sum.
+double joint_agreement(const LocalizerEvidence& e) {
+  const double features = e.inliers / kJointInliers;
+  const double points = (e.scan_points - kFewScanPoints) / kJointPoints;
+  const double margin = e.shape_margin / kJointMargin;
+  const double unrivalled = 1.0 - e.rival_share / kJointRival;
+  return std::clamp(features, 0.0, 1.0) * std::clamp(points, 0.0, 1.0) *
+         std::clamp(margin, 0.0, 1.0) * std::clamp(unrivalled, 0.0, 1.0);
+}
+
 // constant, log inliers, matched share, depth share, scan share, log frames, recognitions, rival,
-// shape margin, log scan points, surface share, telling points
-constexpr std::array<double, kConfidenceFeatures> kWeights = {-14.9, 0.42,  0.0,   1.05, 4.2, 1.05,
-                                                              1.05,  -5.25, 15.75, 0.53, 8.4, 0.2};
+// shape margin, log scan points, surface share, telling points,
+// joint agreement
+constexpr std::array<double, kConfidenceFeatures> kWeights = {
+    -14.9, 0.42, 0.0, 1.05, 4.2, 1.05, 1.05, -5.25, 15.75, 0.53, 8.4, 0.2, 2.5};
 
 }  // namespace
 
@@ -49,7 +64,8 @@ std::array<double, kConfidenceFeatures> confidence_features(const LocalizerEvide
           std::clamp(e.shape_margin, -0.3, 0.3),
           std::log1p(std::clamp(e.scan_points, 0, 400) / 40.0),
           std::clamp(e.surface_share, 0.0, 1.0),
-          telling_points(e)};
+          telling_points(e),
+          joint_agreement(e)};
 }
 
 double confidence_of(const LocalizerEvidence& e) {

@@ -37,7 +37,7 @@ double confidence_of(const LocalizerEvidence& evidence);
 double chance_within_limits(double sigma_position_m, double sigma_heading_rad);
 
 /// The inputs of the logistic model, first the constant 1; for the fit.
-inline constexpr std::size_t kConfidenceFeatures = 12;
+inline constexpr std::size_t kConfidenceFeatures = 13;
 std::array<double, kConfidenceFeatures> confidence_features(const LocalizerEvidence& evidence);
 
 }  // namespace rovigo::slam

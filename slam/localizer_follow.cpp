@@ -115,9 +115,9 @@ void Localizer::Impl::miss(const SeenView& view, const std::vector<int>& local_l
                          time_s - *unvouched_since_s >= kUnvouchedAfterS;
   if (unvouched || motion.carried() ||
       prediction.sigma_position_m > config.localizer.lost_sigma_m) {
-    lose();
+    lose(time_s);
   } else if (carried_off) {
-    was_sure ? lose() : drop_guess(time_s);
+    was_sure ? lose(time_s) : drop_guess(time_s);
   }
 }
 

@@ -56,8 +56,9 @@ struct Localizer::Impl {
   Se3 believed(double time_s) { return motion.predict(time_s).prior.map_from_base; }
   bool is_convincing() const;
   bool matches_here() const;
+  double frames_to_be_sure() const;
   void believe_nothing();
-  void lose();
+  void lose(double time_s);
   void drop_guess(double time_s);
   bool camera_is_silent(double time_s) const;
   PoseEstimate estimate(double time_s);
@@ -81,11 +82,12 @@ struct Localizer::Impl {
   std::vector<int> tracked;
   LocalizerEvidence evidence;
   int frames = 0;
-  int inliers_now = 0;    ///< of the newest frame; what earlier ones had fades in the evidence
-  int misses = 0;         ///< frames in a row that matched nothing
-  bool broken = false;    ///< the view has jumped since a frame last agreed
-  bool was_sure = false;  ///< of this place, before the camera was blind
-  bool doubt = false;     ///< the newest frame shows plenty and does not fit
+  int inliers_now = 0;     ///< of the newest frame; what earlier ones had fades in the evidence
+  int misses = 0;          ///< frames in a row that matched nothing
+  bool broken = false;     ///< the view has jumped since a frame last agreed
+  double jumped_s = -1e9;  ///< when it last did
+  bool was_sure = false;   ///< of this place, before the camera was blind
+  bool doubt = false;      ///< the newest frame shows plenty and does not fit
   std::optional<double> contradicted_since_s;
   std::optional<double> unvouched_since_s;
   double last_fix_s = -1e9;

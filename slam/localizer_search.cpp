@@ -24,7 +24,8 @@ constexpr double kBetterHeld = 0.03;     // of the local scan: walls in one view
 constexpr double kRefutedConfidence = 0.05;
 constexpr double kNoShapeMargin = 0.1;
 constexpr double kWorseThanRival = -0.05;
-constexpr double kMostRival = 0.2;  // share of the votes that another place may have
+constexpr double kMuchWorse = -0.06;  // look-alikes match for seconds
+constexpr double kMostRival = 0.2;    // share of the votes that another place may have
 constexpr double kStillScanShare = 0.5;
 constexpr double kSureRecognition = 0.9;                           // where views cannot be added up
 constexpr double kSureRecognitions = 4.0, kHardlyRivalled = 0.02;  // make up for few scan points
@@ -146,13 +147,14 @@ void Localizer::Impl::judge_places(const SeenView& view, bool is_new) {
   if (!was_sure || confidence_of(evidence) < kRefutedConfidence) {
     adopt(time_s, place);
   } else if (broken) {
-    lose();
+    lose(time_s);
   }
 }
 
-/// Views that match say more than a little more of shape elsewhere.
+/// Views that match say more than a little more of shape elsewhere; than much more they do not.
 bool Localizer::Impl::matches_here() const {
-  return state == State::kConfirming && misses == 0 && inliers_now >= kMinTelling;
+  return state == State::kConfirming && misses == 0 && inliers_now >= kMinTelling &&
+         evidence.shape_margin > kMuchWorse;
 }
 
 void Localizer::Impl::adopt(double time_s, const Se3& map_from_base) {
@@ -184,6 +186,13 @@ void Localizer::Impl::weigh_support(double time_s) {
   evidence.scan_points = support.scan_points;
 }
 
+/// Walls alone leave a pose open along them until the rover has seen around a corner or two; some
+/// matches that tell places apart shorten the wait.
+double Localizer::Impl::frames_to_be_sure() const {
+  const double lacking = 1.0 - static_cast<double>(evidence.inliers) / kMinTelling;
+  return kSureFramesByWalls * std::max(0.0, lacking);
+}
+
 /// Enough frames agree, and the whole map has no better place for what they show.
 bool Localizer::Impl::is_convincing() const {
   if (evidence.agreeing_frames < config.localizer.confirmation_frames) return false;
@@ -196,8 +205,7 @@ bool Localizer::Impl::is_convincing() const {
     return evidence.depth_share >= kSureDepthShare && evidence.inliers >= kSureTelling &&
            evidence.recognitions >= kSureRecognition && evidence.rival_share <= kMostRival;
   }
-  // Walls alone leave a pose open along them until the rover has seen around a corner or two.
-  if (evidence.inliers < kMinTelling && evidence.agreeing_frames < kSureFramesByWalls) return false;
+  if (evidence.agreeing_frames < frames_to_be_sure()) return false;
   const bool clearly_recognized =
       evidence.recognitions >= kSureRecognitions && evidence.rival_share <= kHardlyRivalled;
   const bool enough_seen = evidence.scan_points >= kSureScanPoints ||

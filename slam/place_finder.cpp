@@ -51,15 +51,15 @@ PlaceFinder::PlaceFinder(const maps::OccupancyGrid& grid, DepthMemory depths)
 }
 
 bool PlaceFinder::see(double time_s, const Se3& odom_from_base, const std::vector<ScanPoint>& scan,
-                      const cv::Mat& depth, double depth_unit_m) {
+                      const cv::Mat& depth, double depth_unit_m, bool jumped) {
   if (!field_) return false;
-  const bool is_new = local_scan_.add(time_s, to_planar(odom_from_base), scan);
+  const bool is_new = local_scan_.add(time_s, to_planar(odom_from_base), scan, jumped);
   if (is_new) {
-    views_.push_back({odom_from_base, depths_.view_of(depth, depth_unit_m)});
+    views_.push_back({time_s, odom_from_base, depths_.view_of(depth, depth_unit_m)});
     if (views_.size() > kMostViews) views_.pop_front();
   }
   points_ = local_scan_.points(to_planar(odom_from_base));
-  return is_new;
+  return is_new || unsearched_;
 }
 
 void PlaceFinder::recognize(const Se3& map_from_base, const Se3& odom_from_base, double weight) {
@@ -100,6 +100,7 @@ void PlaceFinder::propose(const Se3& map_from_odom, const Se3& odom_from_base) {
 }
 
 void PlaceFinder::search(const Se3& odom_from_base, const std::optional<PoseRegion>& region) {
+  unsearched_ = false;
   if (scan_search_ && points_.size() >= kFewPoints) {
     const auto found = scan_search_->find(some_of(points_), kLeastFit, kBelowBest, kMostPlaces);
     knows_all_rivals_ = found.complete;
@@ -208,11 +209,12 @@ PlaceSupport PlaceFinder::support(const Se3& map_from_base, const Se3& odom_from
   return out;
 }
 
-void PlaceFinder::clear() {
-  local_scan_.clear();
-  views_.clear();
+void PlaceFinder::clear_before(double time_s) {
+  local_scan_.forget_before(time_s);
+  while (!views_.empty() && views_.front().time_s < time_s) views_.pop_front();
   points_.clear();
   candidates_.clear();
+  unsearched_ = true;
   knows_all_rivals_ = false;
 }
 

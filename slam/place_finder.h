@@ -44,8 +44,9 @@ class PlaceFinder {
   PlaceFinder(const maps::OccupancyGrid& grid, DepthMemory depths);
 
   /// A frame's depth image, and its scan in base_link; true if it showed enough new to judge again.
+  /// `jumped`: it does not go on from the view before.
   bool see(double time_s, const Se3& odom_from_base, const std::vector<ScanPoint>& scan,
-           const cv::Mat& depth, double depth_unit_m);
+           const cv::Mat& depth, double depth_unit_m, bool jumped);
 
   /// A view recognised: `weight` 1 for a clear one.
   void recognize(const Se3& map_from_base, const Se3& odom_from_base, double weight);
@@ -65,7 +66,8 @@ class PlaceFinder {
   bool is_best(const Se3& map_from_base, const Se3& odom_from_base) const;
   PlaceSupport support(const Se3& map_from_base, const Se3& odom_from_base) const;
 
-  void clear();
+  /// Forgets every place, and the views before this moment: the rover was carried then.
+  void clear_before(double time_s);
   /// Forgets recognitions, not the scan: where views cannot be tied together.
   void forget_candidates() { candidates_.clear(); }
 
@@ -76,6 +78,7 @@ class PlaceFinder {
 
  private:
   struct View {
+    double time_s = 0.0;
     Se3 odom_from_base;
     DepthView depth;
   };
@@ -92,6 +95,7 @@ class PlaceFinder {
   LocalScan local_scan_;
   std::vector<ScanPoint> points_;  ///< of the local scan, in base_link of the newest frame
   std::vector<PlaceCandidate> candidates_;
+  bool unsearched_ = false;        ///< the scan is not that of the last search any more
   bool knows_all_rivals_ = false;  ///< a search has been made, and the last one came to its end
 };
 

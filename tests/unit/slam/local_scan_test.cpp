@@ -49,5 +49,15 @@ TEST(LocalScan, WhatWasSeenLongAgoIsForgotten) {
   EXPECT_EQ(scan.points({0, 0, 0}).size(), 1u);
 }
 
+TEST(LocalScan, AViewThatJumpsIsTakenThoughTheWheelsStood) {
+  LocalScan scan;
+  scan.add(0.0, {0, 0, 0}, {{{2.0, 0.0}, 0.01}});
+  EXPECT_TRUE(scan.add(1.0, {0, 0, 0}, {{{3.0, 0.0}, 0.01}}, true));
+  scan.forget_before(0.5);
+  const auto points = scan.points({0, 0, 0});
+  ASSERT_EQ(points.size(), 1u);
+  EXPECT_DOUBLE_EQ(points[0].base_point.x, 3.0);
+}
+
 }  // namespace
 }  // namespace rovigo::slam

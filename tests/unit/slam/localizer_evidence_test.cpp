@@ -68,6 +68,20 @@ TEST(ConfidenceOf, ASmallMarginSaysMoreTheMorePointsItComesFrom) {
               0.1);
 }
 
+TEST(ConfidenceOf, FeaturesAndShapeTogetherSayMoreThanTheirSum) {
+  const auto odds = [](int inliers, double margin) {
+    LocalizerEvidence e = convincing();
+    e.agreeing_frames = 2;
+    e.recognitions = 0.5;
+    e.inliers = inliers;
+    e.shape_margin = margin;
+    const double p = confidence_of(e);
+    return std::log(p / (1.0 - p));
+  };
+  const double features = odds(20, 0.0) - odds(0, 0.0), shape = odds(0, 0.03) - odds(0, 0.0);
+  EXPECT_GT(odds(20, 0.03), odds(0, 0.0) + features + shape + 1.0);
+}
+
 TEST(ConfidenceOf, IsAChanceForAnyEvidence) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> u(-1.0, 2.0);

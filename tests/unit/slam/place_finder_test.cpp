@@ -39,14 +39,14 @@ struct Rover {
   Rover(const DepthRoom& r, const maps::SavedMap& map, const TPose2D& at)
       : room(r), start(at), finder(map.grid, depths_of(map)) {}
 
-  void turns_to(double turned_rad, bool searches = true) {
+  void turns_to(double turned_rad, bool searches = true, bool jumped = false) {
     odom = {0.0, 0.0, maps::wrap_angle(turned_rad)};
     truth = maps::compose(start, odom);
     const cv::Mat depth = room.depth(truth);
     SlamConfig config;
     const auto scan =
         obstacle_points(depth, 0.001, DepthRoom::camera(), DepthRoom::base_from_camera(), config);
-    if (finder.see(time_s += 0.2, from_planar(odom), scan, depth, 0.001) && searches) {
+    if (finder.see(time_s += 0.2, from_planar(odom), scan, depth, 0.001, jumped) && searches) {
       finder.search(from_planar(odom), std::nullopt);
     }
   }
@@ -161,8 +161,22 @@ TEST(PlaceFinder, RecognitionsFadeAndAreForgotten) {
   EXPECT_DOUBLE_EQ(rover.finder.support(from_planar(rover.start), Se3{}).recognitions, 1.0);
   for (int i = 0; i < 34; ++i) rover.finder.fade();
   EXPECT_NEAR(rover.finder.support(from_planar(rover.start), Se3{}).recognitions, 0.5, 0.02);
-  rover.finder.clear();
+  rover.finder.clear_before(1.0);
   EXPECT_FALSE(rover.finder.best());
+}
+
+TEST(PlaceFinder, WhatWasSeenSinceTheRoverWasCarriedStillTellsWhereItIs) {
+  const DepthRoom room = test::odd_room();
+  Rover rover(room, map_of(room), {1.0, 1.2, 2.0});
+  for (double turned = 0.0; turned < 1.5; turned += 0.2) rover.turns_to(turned, false);
+  const double carried_s = rover.time_s + 0.1;
+  const TPose2D put_down{3.0, 2.0, -1.0};
+  rover.start = maps::compose(put_down, maps::inverse(rover.odom));  // which odometry knows not of
+  rover.turns_to(1.4, false, true);
+  for (double turned = 1.6; turned < 6.0; turned += 0.2) rover.turns_to(turned, false);
+  rover.finder.clear_before(carried_s);
+  rover.turns_to(6.05);  // hardly more than before: the views that were kept are searched
+  EXPECT_LT(rover.error_m(), 0.1);
 }
 
 TEST(PlaceFinder, WithoutAGridAppearanceAloneDecides) {
