@@ -56,15 +56,13 @@ class Cruise {
  public:
   Cruise(const RovigoConfig& config, const sim::Scenario& scenario)
       : simulator_(empty_hall(), options_of(config, scenario)),
-        poses_(perturbed_poses(simulator_, TPose2D(), scenario, 1)) {
+        poses_(perturbed_poses(simulator_, TPose2D(), scenario, 1)),
+        loop_(simulator_, TPose2D(), *poses_, config, hooks_) {
     for (double t = 0.0; t < kCruiseBeforeS; t += kCommandS) advance({kCruiseMS, 0.0, 0.0});
   }
 
   control::PoseInput advance(const TTwist2D& command) {
-    for (int i = 0; i < kStepsPerCommand; ++i) {
-      simulator_.step(command);
-      for (const auto& o : simulator_.take_observations()) poses_->observe(*o);
-    }
+    loop_.advance(command);
     return poses_->pose(simulator_.time_s());
   }
 
@@ -80,6 +78,8 @@ class Cruise {
 
   sim::Simulator simulator_;
   std::unique_ptr<PoseSource> poses_;
+  DriveHooks hooks_;
+  DriveLoop loop_;
 };
 
 sim::Scenario without_noise(sim::Scenario scenario) {

@@ -19,9 +19,7 @@ constexpr double kTurnShare = 0.9;        ///< of the turn limits used, so that 
 constexpr double kCatchUpShare = 0.2;     ///< a late rover may drive this much above plan ...
 constexpr double kCatchUpSpeedMS = 0.04;  ///< ... plus this
 constexpr double kIntegralShare = 0.3;    ///< the speed integral's authority; none at a stop
-// A steady cross-track error is taken out over this way, or this time where that is longer; by
-// aiming at most this far beside the path.
-constexpr double kDriftLengthM = 1.0, kDriftTimeS = 3.0, kMostDriftM = 0.03;
+constexpr double kSlowestCrabMS = 0.1, kMostCrabRad = 0.3;
 constexpr SearchWindow kResumeWindow{.back_m = 0.5, .ahead_m = 1.0};
 
 PiGains heading_gains(const ControlConfig& c) {
@@ -60,7 +58,6 @@ void PathFollower::resume(const TPose2D& pose, double speed_m_s) {
   speed_pi_.reset();
   pace_ = 0.0;
   rest_time_s_ = 0.0;
-  drift_m_ = 0.0;
   if (leg_index_ >= legs_.legs().size()) return;
   const Leg& leg = legs_.legs()[leg_index_];
   if (leg.kind == LegKind::kTurn) return;  // the turn's pace waits for the heading by itself
@@ -89,7 +86,6 @@ void PathFollower::next_leg() {
   rest_time_s_ = 0.0;
   turning_first_ = false;
   nudge_.reset();
-  drift_m_ = 0.0;
   heading_pi_.reset();
   speed_pi_.reset();
 }
@@ -116,18 +112,18 @@ PathFollower::Approach PathFollower::approach(const PathPlace& place, double hea
   // Fades out just before a stop, so that the rover ends along the path.
   const double gain = approach_gain(speed) * std::clamp(remaining / kFadeBeforeStopM, 0.0, 1.0);
   const double steepest = config_.max_approach_angle_rad;
-  const double bend = std::tanh(gain * (place.cross_track_m + drift_m_) / steepest);
+  const double bend = std::tanh(gain * place.cross_track_m / steepest);
   const double speed_across = speed * std::sin(-heading_error);
   return {-steepest * bend, -gain * (1.0 - bend * bend) * speed_across};
 }
 
-/// What pushes the rover aside all the time (a slope, wheels that do not point ahead) is answered
-/// by the integral of the cross-track error over the way driven.
-void PathFollower::learn_drift(double cross_track_m, const FollowInput& in) {
-  const double dt = in.dt_s > 0.0 ? std::min(in.dt_s, PiController::kLongestStepS) : 0.0;
-  const double error = std::clamp(cross_track_m, -kEasyOffPathM, kEasyOffPathM);
-  const double rate = std::clamp(in.twist.vx / kDriftLengthM, 0.0, 1.0 / kDriftTimeS);
-  drift_m_ = std::clamp(drift_m_ + error * rate * dt, -kMostDriftM, kMostDriftM);
+/// Where the floor slides the rover aside, it has to point against that.
+double PathFollower::crab(double path_heading, double remaining, const FollowInput& in) const {
+  const double aside =
+      in.side_drift_m_s.y * std::cos(path_heading) - in.side_drift_m_s.x * std::sin(path_heading);
+  const double angle = -aside / std::max(in.twist.vx, kSlowestCrabMS);
+  return std::clamp(angle, -kMostCrabRad, kMostCrabRad) *
+         std::clamp(remaining / kFadeBeforeStopM, 0.0, 1.0);
 }
 
 FollowOutput PathFollower::drive(const Leg& leg, const FollowInput& in) {
@@ -148,9 +144,9 @@ FollowOutput PathFollower::drive(const Leg& leg, const FollowInput& in) {
     if (std::abs(in.twist.vx) < kStandingSpeedMS) next_leg();
     return out;  // standstill is wanted
   }
-  learn_drift(place.cross_track_m, in);
   const Approach to_path = approach(place, out.heading_error_rad, remaining, in.twist.vx);
-  const double error = wrap_angle(out.heading_error_rad + to_path.heading);
+  const double error =
+      wrap_angle(out.heading_error_rad + to_path.heading + crab(place.pose.phi, remaining, in));
   if (must_turn_first(error)) {
     pace_ = 0.0;
     speed_pi_.reset();

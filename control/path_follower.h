@@ -14,6 +14,8 @@
 
 namespace rovigo::control {
 
+inline constexpr double kTurnBackSpeedMS = 0.08;  ///< turns in place return to their place so fast
+
 struct FollowInput {
   TPose2D pose;       ///< estimated, at the time the command takes effect
   TTwist2D twist;     ///< modelled, now
@@ -21,6 +23,8 @@ struct FollowInput {
   double speed_cap_m_s = 0.0;
   double turn_gain = 1.0;      ///< real turn per commanded turn, > 0
   double dead_zone_m_s = 0.0;  ///< rim speed that a standing wheel needs to start
+  TPoint2D side_drift_m_s{0.0,
+                          0.0};  ///< over the map; the rover slides with what lies along its axles
 };
 
 struct FollowOutput {
@@ -59,8 +63,8 @@ class PathFollower {
   bool has_arrived(const Leg& leg, double remaining) const;
   bool must_turn_first(double error);
   double approach_gain(double speed) const;
-  void learn_drift(double cross_track_m, const FollowInput& in);
-  double way_back(const TPose2D& place, const FollowInput& in) const;
+  double hold_place(const Leg& leg, double turn_rate, const FollowInput& in) const;
+  double crab(double path_heading, double remaining, const FollowInput& in) const;
   Approach approach(const PathPlace& place, double heading_error, double remaining,
                     double speed) const;
   double wanted_speed(const Leg& leg, const PathPlace& place, double heading_error,
@@ -82,7 +86,6 @@ class PathFollower {
   double arc_m_ = 0.0;
   double rest_time_s_ = 0.0;  ///< spent at the end of the leg
   bool turning_first_ = false;
-  double drift_m_ = 0.0;  ///< integral of the cross-track error over the way, per its length
 };
 
 }  // namespace rovigo::control

@@ -16,8 +16,7 @@ constexpr double kTurnShare = 0.9;     ///< of the turn limits used, so that fee
 constexpr double kEasyTurnRad = 0.15;  ///< a turn's reference waits from this heading error on ...
 constexpr double kLostTurnRad = 0.4;   ///< ... and stands from this
 constexpr double kNudgeRad = 0.2;      ///< up to here a standing rover is nudged, not steered
-// A turn in place that is farther off its place than this goes back to it.
-constexpr double kTurnOffPlaceM = 0.01, kTurnBackRate_1_s = 1.0, kTurnBackSpeedMS = 0.08;
+constexpr double kLeastHoldRateRadS = 0.3, kHoldSlack = 0.15;  ///< rad; keeps noise from mattering
 
 }  // namespace
 
@@ -100,16 +99,34 @@ FollowOutput PathFollower::turn(const Leg& leg, const FollowInput& in) {
     return out;
   }
   out.wanted.omega = turn_in_place(error, pace_ * planned, in);
-  out.wanted.vx = way_back(now.pose, in);
+  out.wanted.vx = hold_place(leg, pace_ * planned, in);
   return out;
 }
 
-/// A turn that slid off its place (wheels slip, floors slope) goes back there while the rover faces
-/// it; never backwards.
-double PathFollower::way_back(const TPose2D& place, const FollowInput& in) const {
-  const TPoint2D seen = maps::position_of(maps::compose(maps::inverse(in.pose), place));
-  if (std::hypot(seen.x, seen.y) < kTurnOffPlaceM) return 0.0;
-  return std::clamp(kTurnBackRate_1_s * seen.x, 0.0, std::min(kTurnBackSpeedMS, in.speed_cap_m_s));
+/// A turn slides off its place: wheels slip, floors slope. Of all speeds forwards and backwards
+/// over the rest of the turn that bring it back there by its end, what is known of the sliding
+/// included, these are the slowest ones (least squares: a speed along t(angle) that is t * lambda).
+double PathFollower::hold_place(const Leg& leg, double turn_rate, const FollowInput& in) const {
+  const TPose2D& end = legs_.trajectory().points[leg.last].pose;
+  double to_go = wrap_angle(end.phi - in.pose.phi);
+  if (to_go * turn_rate < 0.0 && std::abs(to_go) > maps::kPi / 2) {
+    to_go += std::copysign(2.0 * maps::kPi, turn_rate);
+  }
+  const double from = in.pose.phi, to = from + to_go, size = std::abs(to_go);
+  // M = integral of t t' over the angles to come.
+  const double side = to_go < 0.0 ? -1.0 : 1.0;
+  const double wave = side * (std::sin(2 * to) - std::sin(2 * from)) / 4.0;
+  const double xy = -side * (std::cos(2 * to) - std::cos(2 * from)) / 4.0;
+  const double xx = size / 2 + wave, yy = size / 2 - wave;
+  const double rate = std::max(std::abs(turn_rate), kLeastHoldRateRadS);
+  const TPoint2D& d = in.side_drift_m_s;
+  const double bx = rate * (end.x - in.pose.x) - ((size - xx) * d.x - xy * d.y);
+  const double by = rate * (end.y - in.pose.y) - ((size - yy) * d.y - xy * d.x);
+  const double mx = xx + kHoldSlack, my = yy + kHoldSlack;
+  const double determinant = mx * my - xy * xy;
+  const double lx = (my * bx - xy * by) / determinant, ly = (mx * by - xy * bx) / determinant;
+  const double most = std::min(limits_.max_reverse_speed_m_s, in.speed_cap_m_s);
+  return std::clamp(lx * std::cos(from) + ly * std::sin(from), -most, most);
 }
 
 }  // namespace rovigo::control

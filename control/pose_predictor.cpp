@@ -4,20 +4,24 @@
 #include <cmath>
 
 namespace rovigo::control {
-namespace {
 
-/// `pose` after moving with `twist` for `dt_s`, along the chord of the arc.
-TPose2D moved(const TPose2D& pose, const TTwist2D& twist, double dt_s) {
+bool PosePredictor::rolls(const TTwist2D& twist) const {
+  constexpr double kRollingMS = 0.02;
+  return std::abs(twist.vx) + std::abs(twist.omega) * drive_.track_width_m / 2 > kRollingMS;
+}
+
+/// `pose` after moving with `twist` for `dt_s`, along the chord of the arc, and sliding aside.
+TPose2D PosePredictor::moved(const TPose2D& pose, const TTwist2D& twist, double dt_s) const {
   const double turn = twist.omega * dt_s;
   const double heading = pose.phi + turn / 2;
   const double half = turn / 2;
   const double chord = std::abs(half) > 1e-9 ? std::sin(half) / half : 1.0;
   const double length = twist.vx * dt_s * chord;
-  return {pose.x + length * std::cos(heading), pose.y + length * std::sin(heading),
+  const double c = std::cos(heading), s = std::sin(heading);
+  const double aside = rolls(twist) ? (side_drift_.y * c - side_drift_.x * s) * dt_s : 0.0;
+  return {pose.x + length * c - aside * s, pose.y + length * s + aside * c,
           maps::wrap_angle(pose.phi + turn)};
 }
-
-}  // namespace
 
 /// The command without the wheels that stiction holds.
 TTwist2D PosePredictor::what_the_wheels_follow() const {
@@ -102,6 +106,15 @@ double PosePredictor::asked_turn(double from_s, double to_s) const {
     if (overlap > 0.0) turn += m.twist.omega * overlap;
   }
   return turn;
+}
+
+double PosePredictor::rolled_s(double from_s, double to_s) const {
+  double seconds = 0.0;
+  for (const Motion& m : motions_) {
+    const double overlap = std::min(m.to_s, to_s) - std::max(m.from_s, from_s);
+    if (overlap > 0.0 && rolls(m.twist)) seconds += overlap;
+  }
+  return seconds;
 }
 
 }  // namespace rovigo::control

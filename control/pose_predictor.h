@@ -39,6 +39,10 @@ class PosePredictor {
   double asked_turn(double from_s, double to_s) const;
 
   void set_turn_gain(double gain) { turn_gain_ = gain; }
+  /// Sideways motion while the wheels roll: what of this, over the map, lies along the axles.
+  void set_side_drift(const TPoint2D& m_s) { side_drift_ = m_s; }
+  /// For how long the wheels rolled between two times, seconds.
+  double rolled_s(double from_s, double to_s) const;
   void set_dead_zone(double rim_m_s) { drive_.dead_zone_m_s = rim_m_s; }
   double anchor_time_s() const { return anchor_time_s_; }
 
@@ -52,9 +56,12 @@ class PosePredictor {
   static constexpr double kMemoryS = 2.0;
 
   TTwist2D what_the_wheels_follow() const;
+  bool rolls(const TTwist2D& twist) const;
+  TPose2D moved(const TPose2D& pose, const TTwist2D& twist, double dt_s) const;
 
   DriveModel drive_;
   double turn_gain_ = 1.0;
+  TPoint2D side_drift_{0.0, 0.0};
   bool started_ = false;
   double now_s_ = 0.0;
   TTwist2D command_;

@@ -56,8 +56,9 @@ bool StictionEstimator::stalled(const TPose2D& now, double sigma_position_m) con
   const double turned_m = std::abs(maps::wrap_angle(now.phi - window_->start.phi)) * half_track_m_;
   const double forward = std::abs(window_->forward_m), turn = std::abs(window_->turn_m);
   // Only what poses this noisy can tell counts; of that, nothing must have happened.
+  // Where next to nothing was expected, not even poses without noise tell anything.
   const bool turn_tells = turn >= noise_of(kHeadingSigmaRad * half_track_m_);
-  const bool forward_tells = forward >= noise_of(sigma_position_m);
+  const bool forward_tells = forward >= std::max(noise_of(sigma_position_m), kFarEnoughM / 4.0);
   return (!turn_tells || turned_m < kStalledShare * turn) &&
          (!forward_tells || moved_m < kStalledShare * forward);
 }

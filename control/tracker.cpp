@@ -9,6 +9,7 @@
 #include "control/pose_predictor.h"
 #include "control/pose_use.h"
 #include "control/progress_monitor.h"
+#include "control/side_drift.h"
 #include "control/stiction.h"
 #include "control/turn_gain.h"
 #include "control/watchdog.h"
@@ -28,6 +29,13 @@ DriveModel drive_model(const ControlConfig& config, const maps::RobotModel& robo
           robot.track_width_m};
 }
 
+/// Only turns in place go backwards, to keep their place.
+DriveLimits tracking_limits(const ControlConfig& config, const maps::RobotModel& robot) {
+  DriveLimits limits = drive_limits(config, robot);
+  limits.max_reverse_speed_m_s = std::min(kTurnBackSpeedMS, limits.max_speed_m_s);
+  return limits;
+}
+
 bool at_rest(const TTwist2D& twist) {
   return std::abs(twist.vx) < 0.005 && std::abs(twist.omega) < 0.02;
 }
@@ -38,7 +46,7 @@ struct TrajectoryTracker::Impl {
   Impl(const ControlConfig& config_in, const maps::RobotModel& robot,
        planning::Trajectory trajectory)
       : config(config_in),
-        limits(drive_limits(config_in, robot)),
+        limits(tracking_limits(config_in, robot)),
         time_limit_s(config_in.timeout_factor * trajectory.duration_s() +
                      config_in.timeout_extra_s),
         follower(config_in, limits, std::move(trajectory)),
@@ -67,6 +75,7 @@ struct TrajectoryTracker::Impl {
   TPose2D goal;
   PosePredictor predictor;
   TurnGainEstimator turn_gain;
+  SideDriftEstimator side_drift;
   StictionEstimator stiction;
   Watchdog watchdog;
   ProgressMonitor monitor;
@@ -188,6 +197,11 @@ void TrajectoryTracker::Impl::correct_estimate(const PoseInput& pose) {
     turn_gain.interrupt();
     stiction.interrupt();
   }
+  if (!jumped && pose.quality == PoseQuality::kGood) {
+    side_drift.add(pose.map_from_base, predictor.at(pose.time_s), share,
+                   predictor.rolled_s(predictor.anchor_time_s(), pose.time_s));
+    predictor.set_side_drift(side_drift.drift_m_s());
+  }
   predictor.correct(pose.time_s, pose.map_from_base, jumped ? 1.0 : share);
   if (config.adapt_turn_gain && pose.quality == PoseQuality::kGood) {
     turn_gain.add(pose.time_s, pose.map_from_base.phi, predictor);
@@ -207,6 +221,7 @@ TTwist2D TrajectoryTracker::Impl::follow(double now_s, double dt_s) {
   input.speed_cap_m_s = speed_cap_m_s;
   input.turn_gain = turn_gain.gain();
   input.dead_zone_m_s = stiction.dead_zone_m_s();
+  input.side_drift_m_s = side_drift.drift_m_s();
   const bool stands = faster_wheel(input.twist, limits.track_width_m) < kStandingRimSpeedMS;
   standing_s = stands ? standing_s + std::max(dt_s, 0.0) : 0.0;
   const FollowOutput out = follower.step(input);

@@ -10,6 +10,7 @@
 #include "app/report/strip_plot.h"
 #include "app/report/svg_plot.h"
 #include "app/text.h"
+#include "app/track/controller_comparison.h"
 
 namespace rovigo::app {
 namespace {
@@ -175,6 +176,23 @@ std::string comparison(const std::string& title, const std::string& left, const 
   return out + "</table>\n";
 }
 
+std::string controllers_table(const TrackResult& result) {
+  const auto comparisons = compare_controllers(result);
+  if (comparisons.empty()) return {};
+  std::string out = "<h2>Our controller against the thesis's law</h2>\n<table>" +
+                    page_heads({"Drives", "ours: RMS", "the thesis's: RMS", "Ratio", "Median ratio",
+                                "it arrived", "Ratio there", "Median there"});
+  for (const ControllerComparison& c : comparisons) {
+    const bool arrived = c.reference_arrived > 0;
+    out += page_cells({c.what, quantity(c.rms_m, "m"), quantity(c.reference_rms_m, "m"),
+                       fixed(c.ratio, 1), fixed(c.median_ratio, 1),
+                       std::to_string(c.reference_arrived) + " of " + std::to_string(c.drives),
+                       arrived ? fixed(c.arrived_ratio, 1) : "-",
+                       arrived ? fixed(c.arrived_median_ratio, 1) : "-"});
+  }
+  return out + "</table>\n";
+}
+
 std::string controllers_compared(const std::vector<Entry>& entries) {
   const auto key = [](const Entry& e) {
     return e.group + "/" + e.trajectory + "/" + e.speed + " m/s, seed " + std::to_string(e.seed());
@@ -288,7 +306,8 @@ std::string track_page(const TrackPageInput& in) {
   out += page_title(title, good, good ? "passed" : "failed");
   out += "<p class=\"summary\">" + escaped(result_message(in.result)) + "</p>\n";
   out += figures(in, entries) + failures_table(entries) + disturbances_table(entries) +
-         distributions(entries) + controllers_compared(entries) + versions_compared(in, entries);
+         distributions(entries) + controllers_table(in.result) + controllers_compared(entries) +
+         versions_compared(in, entries);
   const auto by_trajectory =
       grouped(entries, [](const Entry& e) -> std::string { return e.trajectory; });
   for (const auto& [name, runs] : by_trajectory) out += trajectory_section(name, runs);

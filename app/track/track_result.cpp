@@ -6,6 +6,7 @@
 
 #include "app/simulated_drive.h"
 #include "app/text.h"
+#include "app/track/controller_comparison.h"
 #include "maps/atomic_file.h"
 #include "maps/error.h"
 
@@ -126,6 +127,8 @@ Json result_json(const TrackResult& result) {
   object["passed"] = result.runs.size() - failed;
   object["failed"] = failed;
   object["log_hash"] = sha256(lines);
+  const auto comparisons = compare_controllers(result);
+  if (!comparisons.empty()) object["against_reference"] = comparison_json(comparisons);
   object["runs"] = result.runs;
   return object;
 }
@@ -151,6 +154,7 @@ std::vector<Row> result_rows(const TrackResult& result) {
                                 ", " + with_unit(w.max, 4, "m at most") + ", goal " +
                                 with_unit(w.goal, 4, "m"));
   }
+  for (Row& row : comparison_rows(compare_controllers(result))) rows.push_back(std::move(row));
   for (const Json& run : result.runs) {
     if (run["passed"].get<bool>()) continue;
     const auto [name, seed] = key_of(run);

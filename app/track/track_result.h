@@ -34,7 +34,7 @@ std::size_t failed_runs(const TrackResult& result);
 /// design.md's `track`. `log_hash`: SHA-256 over a line "name seed log_hash" for each run.
 nlohmann::ordered_json result_json(const TrackResult& result);
 std::string result_message(const TrackResult& result);
-/// The failed runs, and the worst figures of each group.
+/// The worst figures of each group, our controller against the thesis's law, the failed runs.
 std::vector<Row> result_rows(const TrackResult& result);
 /// A line for each run.
 std::string result_csv(const TrackResult& result);

@@ -1,4 +1,5 @@
 #include "control/tracker.h"
+#include "control/path_follower.h"
 
 #include <gtest/gtest.h>
 
@@ -67,7 +68,7 @@ TEST(Tracker, ASteadyPushToTheSideIsTakenOut) {
   EXPECT_LT(worst, 0.004);
 }
 
-TEST(Tracker, ATurnThatSlidOffItsPlaceGoesBackThereForwards) {
+TEST(Tracker, ATurnThatSlidOffItsPlaceReturnsThereSlowly) {
   const auto plan = TrajectoryBuilder({}, {}).turn(maps::kPi).get();
   DriveSetup setup;
   setup.disturb = [](double time, Plant& plant) {  // 5 cm to the right, once
@@ -77,8 +78,38 @@ TEST(Tracker, ATurnThatSlidOffItsPlaceGoesBackThereForwards) {
     plant.put(pose);
   };
   const Outcome run = drive(plan, setup);
-  for (const DriveStep& s : run.log.steps) ASSERT_GE(s.command.vx, 0.0);
+  for (const DriveStep& s : run.log.steps) ASSERT_LE(std::abs(s.command.vx), kTurnBackSpeedMS);
   EXPECT_LT(std::abs(run.log.steps.back().true_pose.y), 0.02);
+}
+
+TEST(Tracker, OnASlopeItTurnsOnTheSpotAndDrivesStraight) {
+  // Slides downhill, as far as that lies along the axles, while its wheels roll.
+  const auto slide = [](double, Plant& plant) {
+    constexpr double kDownX = 0.012, kDownY = -0.016;
+    TPose2D pose = plant.pose();
+    if (std::abs(plant.twist().vx) + 0.179 * std::abs(plant.twist().omega) < 0.02) return;
+    const double nx = -std::sin(pose.phi), ny = std::cos(pose.phi);
+    const double aside = (kDownX * nx + kDownY * ny) * 0.01;
+    pose.x += aside * nx;
+    pose.y += aside * ny;
+    plant.put(pose);
+  };
+  TrajectoryBuilder builder({}, {});
+  builder.line(1.5).turn(maps::kPi).line(1.5).turn(-maps::kPi / 2);
+  DriveSetup setup{
+      .pose_latency_s = 0.05, .position_noise_m = 0.005, .yaw_noise_rad = 0.005, .sigma_m = 0.005};
+  setup.disturb = slide;
+  const Outcome run = drive(builder.get(), setup);
+  EXPECT_EQ(run.log.status, TrackStatus::kReached);
+  double after_turn = 1.0, while_driving = 0.0;
+  for (const DriveStep& step : run.log.steps) {
+    const TPose2D& at = step.true_pose;
+    if (after_turn == 1.0 && at.phi > 3.1) after_turn = std::hypot(at.x - 1.5, at.y);
+    if (at.x > 0.6 && at.x < 1.3) while_driving = std::max(while_driving, std::abs(at.y));
+  }
+  EXPECT_LT(after_turn, 0.012);  // the slide of half a turn at 0.8 rad/s is 0.039
+  EXPECT_LT(while_driving, 0.010);
+  EXPECT_LT(run.metrics.final_position_error_m, 0.015);
 }
 
 TEST(Tracker, DrivesACurveAndStopsCleanlyAtTheGoal) {
@@ -282,7 +313,7 @@ TEST(Tracker, TimesOutWhenFarBehindThePlan) {
   EXPECT_EQ(run.log.status, TrackStatus::kTimedOut);
 }
 
-TEST(Tracker, ApproachesAMissedGoalAgainWithoutReversing) {
+TEST(Tracker, ApproachesAMissedGoalAgainAndGoesBackwardsInTurnsOnly) {
   DriveSetup shoved;
   shoved.disturb = [done = false](double t, Plant& plant) mutable {
     if (!done && t > 3.0 && plant.twist().vx < 0.01) {
@@ -295,7 +326,12 @@ TEST(Tracker, ApproachesAMissedGoalAgainWithoutReversing) {
   EXPECT_EQ(run.log.status, TrackStatus::kReached);
   EXPECT_LT(run.metrics.final_position_error_m, 0.02);
   EXPECT_LT(run.metrics.final_heading_error_rad, 0.05);
-  for (const DriveStep& s : run.log.steps) EXPECT_GE(s.command.vx, 0.0);
+  for (const DriveStep& s : run.log.steps) {
+    EXPECT_GE(s.command.vx, -kTurnBackSpeedMS);
+    if (s.command.vx < -0.01) {
+      EXPECT_EQ(s.reference.speed_m_s, 0.0);
+    }
+  }
 }
 
 TEST(Tracker, AnUnmovingTrajectoryIsReachedAtOnce) {
