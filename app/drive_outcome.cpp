@@ -31,6 +31,13 @@ Outcome held_outcome(control::StopCause cause) {
   return {"stopped", 106, "stopped by the drive side"};
 }
 
+std::string found_again(int times) {
+  if (times == 0) return "";
+  return "; its pose was lost " +
+         std::string(times == 1 ? "once" : std::to_string(times) + " times") +
+         " on the way and found by looking around";
+}
+
 }  // namespace
 
 Outcome outcome_of(const control::DriveLog& log, const control::DriveMetrics& m) {
@@ -43,7 +50,8 @@ Outcome outcome_of(const control::DriveLog& log, const control::DriveMetrics& m)
     case control::TrackStatus::kReached:
       return {"ok", 0,
               "reached the goal, " + with_unit(m.final_position_error_m, 3, "m") + " off, after " +
-                  with_unit(m.driven_length_m, 2, "m") + " and " + with_unit(m.duration_s, 1, "s")};
+                  with_unit(m.driven_length_m, 2, "m") + " and " + with_unit(m.duration_s, 1, "s") +
+                  found_again(log.looked_around)};
     case control::TrackStatus::kPoseLost:
     case control::TrackStatus::kStopped:
       return held_outcome(log.held);
@@ -71,6 +79,7 @@ nlohmann::ordered_json drive_json(const Outcome& outcome, const control::DriveLo
           {"final_heading_error_rad", m.final_heading_error_rad},
           {"estimate_rms_m", m.estimate_rms_m},
           {"collisions", log.contact_events},
+          {"looked_around", log.looked_around},
           {"log_hash", log_hash(log)}};
 }
 

@@ -47,4 +47,6 @@ bool needs_camera(const std::string& pose_kind) {
   return pose_kind == "slam" || pose_kind == "odometry";
 }
 
+bool finds_itself(const std::string& pose_kind) { return pose_kind == "slam"; }
+
 }  // namespace rovigo::app

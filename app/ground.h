@@ -41,4 +41,7 @@ std::unique_ptr<PoseSource> open_poses(const PoseSourceRequest& request, const R
 /// Do poses of this kind need the camera?
 bool needs_camera(const std::string& pose_kind);
 
+/// Can poses of this kind be found again by looking around?
+bool finds_itself(const std::string& pose_kind);
+
 }  // namespace rovigo::app

@@ -140,32 +140,4 @@ std::unique_ptr<PoseSource> perturbed_poses(const sim::Simulator& simulator,
   return std::make_unique<PerturbedPoses>(simulator, world_from_map, scenario.pose, seed);
 }
 
-bool look_around(sim::Simulator& simulator, PoseSource& poses, const TPose2D& start) {
-  constexpr double kStandS = 1.0;
-  constexpr double kTurnRadS = 0.4;
-  constexpr double kOnceRoundS = 2.4 * maps::kPi / kTurnRadS;  // wheels scrub: a little longer
-  constexpr double kFacingRad = 0.1;
-  const auto advance = [&](double yaw_rate) {
-    simulator.step({0.0, 0.0, yaw_rate});
-    for (const auto& o : simulator.take_observations()) poses.observe(*o);
-    return poses.pose(simulator.time_s());
-  };
-  const auto is_good = [](const control::PoseInput& p) {
-    return p.quality == control::PoseQuality::kGood;
-  };
-  const double begin_s = simulator.time_s();
-  control::PoseInput pose = advance(0.0);
-  while (!is_good(pose) && simulator.time_s() < begin_s + kStandS) pose = advance(0.0);
-  if (is_good(pose)) return true;
-  const double turn_s = simulator.time_s();
-  while (!is_good(pose) && simulator.time_s() < turn_s + kOnceRoundS) pose = advance(kTurnRadS);
-  if (!is_good(pose)) return false;
-  const double back_s = simulator.time_s();
-  const auto away = [&] { return maps::wrap_angle(start.phi - pose.map_from_base.phi); };
-  while (std::abs(away()) > kFacingRad && simulator.time_s() < back_s + kOnceRoundS) {
-    pose = advance(away() > 0.0 ? kTurnRadS : -kTurnRadS);
-  }
-  return is_good(pose);
-}
-
 }  // namespace rovigo::app

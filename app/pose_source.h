@@ -39,9 +39,4 @@ std::unique_ptr<PoseSource> perturbed_poses(const sim::Simulator& simulator,
                                             const TPose2D& world_from_map,
                                             const sim::Scenario& scenario, std::uint64_t seed);
 
-/// A rover put down facing what the map never saw finds itself by looking around: turns in place,
-/// at most once round, until the pose is good, then back to `start`'s heading. Does nothing but
-/// stand for a moment when the first frames are recognised. True when the pose is good in the end.
-bool look_around(sim::Simulator& simulator, PoseSource& poses, const TPose2D& start);
-
 }  // namespace rovigo::app

@@ -7,6 +7,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "control/look_around.h"
+
 namespace rovigo::app {
 
 namespace {
@@ -72,6 +74,7 @@ void DriveLoop::step(control::DriveController& controller, double begin_s, contr
   in.pose = pose;
   in.battery_v = simulator_.battery_v();
   in.manual = simulator_.fault(sim::FaultKind::kManualTakeover) != nullptr;
+  in.looks_around = looks_around_;
 
   control::DriveStep step;
   step.command = guard_.pass(in);
@@ -85,6 +88,7 @@ void DriveLoop::step(control::DriveController& controller, double begin_s, contr
   step.reference = last_.reference;
   step.heading_error_rad = last_.heading_error_rad;
   step.cross_track_error_m = last_.cross_track_error_m;
+  if (looks_around_ && !log.steps.empty()) step.reference = log.steps.back().reference;
   log.steps.push_back(step);
   log.status = last_.status;
   if (log.status == control::TrackStatus::kRunning && guard_.out_of_patience(now)) {
@@ -92,20 +96,70 @@ void DriveLoop::step(control::DriveController& controller, double begin_s, contr
   }
 }
 
+bool DriveLoop::look_around(std::optional<double> facing_rad, double begin_s,
+                            control::DriveLog& log) {
+  control::LookAround search(facing_rad);
+  looks_around_ = true;
+  log.status = control::TrackStatus::kRunning;
+  while (log.status == control::TrackStatus::kRunning) {
+    step(search, begin_s, log);
+    advance(log.steps.back().command);
+  }
+  looks_around_ = false;
+  return log.status == control::TrackStatus::kReached;
+}
+
+namespace {
+
+constexpr int kMostLooksAround = 3;
+
+/// The estimator says that it does not know; poses that do not come are another matter.
+bool pose_is_lost(const control::DriveLog& log) {
+  const bool ended =
+      log.status == control::TrackStatus::kPoseLost || log.status == control::TrackStatus::kStopped;
+  return ended &&
+         (log.held == control::StopCause::kNone || log.held == control::StopCause::kLostPoses);
+}
+
+/// Looks around and plans anew; the drive has ended where this finds no pose, or no way.
+std::unique_ptr<control::DriveController> find_again(DriveLoop& loop, const DriveRecovery& recovery,
+                                                     double begin_s, control::DriveLog& log) {
+  ++log.looked_around;
+  std::unique_ptr<control::DriveController> next;
+  if (loop.look_around(std::nullopt, begin_s, log)) {
+    next = recovery.plan_anew(log.steps.back().estimated_pose, log);
+  }
+  log.status = next ? control::TrackStatus::kRunning : control::TrackStatus::kPoseLost;
+  return next;
+}
+
+}  // namespace
+
 control::DriveLog drive_in_simulator(sim::Simulator& simulator, const TPose2D& world_from_map,
                                      PoseSource& poses, control::DriveController& controller,
                                      double planned_duration_s, const RovigoConfig& config,
                                      const DriveHooks& hooks) {
   DriveLoop loop(simulator, world_from_map, poses, config, hooks);
   control::DriveLog log;
+  if (hooks.recovery) {
+    control::DriveLog before;  // no part of the drive
+    log.start_known =
+        loop.look_around(hooks.recovery->start_heading_rad, simulator.time_s(), before);
+  }
   loop.stand_still(kStandBeforeS);
   const int contacts_before = simulator.truth().contact_events;
   const double begin_s = simulator.time_s();
+  std::unique_ptr<control::DriveController> anew;
+  control::DriveController* driver = &controller;
   while (log.status == control::TrackStatus::kRunning) {
-    loop.step(controller, begin_s, log);
+    loop.step(*driver, begin_s, log);
     loop.advance(log.steps.back().command);
     if (hooks.progress && planned_duration_s > 0.0) {
       hooks.progress(log.steps.back().time_s / planned_duration_s);
+    }
+    if (hooks.recovery && pose_is_lost(log) && log.looked_around < kMostLooksAround) {
+      anew = find_again(loop, *hooks.recovery, begin_s, log);
+      driver = anew.get();
     }
   }
   loop.stand_still(kStandAfterS);

@@ -4,6 +4,8 @@
 #include <mrpt/obs/CObservation.h>
 
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,9 +17,20 @@
 
 namespace rovigo::app {
 
+/// For poses that a rover can find by itself: a drive without a good pose at its start looks around
+/// first, and one that loses its pose on the way looks around, plans anew and goes on.
+struct DriveRecovery {
+  double start_heading_rad = 0.0;  ///< map frame: faced again before the drive begins
+  /// The controller of the way that is left, from here. Null: there is none.
+  std::function<std::unique_ptr<control::DriveController>(const TPose2D& map_from_base,
+                                                          const control::DriveLog& so_far)>
+      plan_anew;
+};
+
 struct DriveHooks {
   std::function<void(double share)> progress;  ///< of the planned duration
   std::function<void(const mrpt::obs::CObservation&)> observation;
+  std::optional<DriveRecovery> recovery = std::nullopt;
 };
 
 inline constexpr int kStepsPerCommand = 2;    ///< 120 Hz on a 240 Hz simulator
@@ -43,6 +56,9 @@ class DriveLoop {
   /// What the motors are to do now, as a step of the log whose time counts from `begin_s`; `log`
   /// takes the step, and how the drive stands.
   void step(control::DriveController& controller, double begin_s, control::DriveLog& log);
+  /// Turns in place until the pose is good, then to `facing_rad`, if given; the drive side needs no
+  /// pose meanwhile. `log` as for step(). True when the pose is good in the end.
+  bool look_around(std::optional<double> facing_rad, double begin_s, control::DriveLog& log);
   /// Where the rover truly is, in the map frame.
   TPose2D true_pose() const;
 
@@ -53,12 +69,14 @@ class DriveLoop {
   PoseFaults pose_faults_;
   control::DriveGuard guard_;
   control::TrackerOutput last_;  ///< of the controller, while it was alive
+  bool looks_around_ = false;
   const DriveHooks& hooks_;
 };
 
 /// Stands still for a second (the gyro's bias can be learned), drives until the controller ends the
 /// drive or the drive side has held the rover for too long, stands still for half a second. Control
-/// runs at 120 Hz of simulated time.
+/// runs at 120 Hz of simulated time. With hooks.recovery a lost pose is looked for, on the way a
+/// few times at most.
 control::DriveLog drive_in_simulator(sim::Simulator& simulator, const TPose2D& world_from_map,
                                      PoseSource& poses, control::DriveController& controller,
                                      double planned_duration_s, const RovigoConfig& config,

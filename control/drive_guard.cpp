@@ -42,7 +42,8 @@ TTwist2D DriveGuard::pass(const GuardInput& in) {
   const StopCause cause = cause_at(in);
   if (cause != StopCause::kNone && cause_ == StopCause::kNone) held_since_s_ = in.now_s;
   cause_ = cause;
-  return cause == StopCause::kNone ? set_point_ : TTwist2D();
+  if (cause != StopCause::kNone) return {};
+  return in.looks_around ? TTwist2D(0.0, 0.0, set_point_.omega) : set_point_;
 }
 
 void DriveGuard::take_pose(double now_s, const PoseInput& pose) {
@@ -65,7 +66,7 @@ StopCause DriveGuard::cause_at(const GuardInput& in) const {
   if (in.manual) return StopCause::kManual;
   if (!(in.battery_v >= battery_low_v_)) return StopCause::kLowBattery;
   if (set_points_.expired(in.now_s)) return StopCause::kNoSetPoints;
-  if (!poses_.expired(in.now_s)) return StopCause::kNone;
+  if (in.looks_around || !poses_.expired(in.now_s)) return StopCause::kNone;
   const bool refused_lately = pose_refused_s_ && in.now_s - *pose_refused_s_ < config_.watchdog_s;
   return refused_lately ? pose_refused_ : StopCause::kNoPoses;
 }

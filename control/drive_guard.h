@@ -32,7 +32,8 @@ struct GuardInput {
   PoseInput pose;                     ///< the newest that arrived
   std::optional<TTwist2D> set_point;  ///< what arrived since the last call, if anything did
   double battery_v = 0.0;
-  bool manual = false;  ///< an operator holds the rover
+  bool manual = false;        ///< an operator holds the rover
+  bool looks_around = false;  ///< to find its pose: it needs none, and may turn on the spot only
 };
 
 /// Passes set-points on, or zero: at once on a low battery or a manual takeover, and `watchdog_s`

@@ -30,6 +30,8 @@ struct DriveLog {
   std::string touched;  ///< what was touched first; empty: nothing
   TrackStatus status = TrackStatus::kRunning;
   StopCause held = StopCause::kNone;  ///< at the end
+  bool start_known = true;            ///< false: not recognised, not even by looking around
+  int looked_around = 0;              ///< times it looked for a pose lost on the way
 };
 
 }  // namespace rovigo::control

@@ -35,11 +35,18 @@ void Localizer::Impl::begin(double time_s) {
   if (!prior) return;
   motion.place(time_s, prior->map_from_base, prior_sigma_m, prior_sigma_rad);
   has_pose = true;
+  believe_prior();
+}
+
+/// Somebody says where it is: that is where frames are compared first, as surely as was said.
+void Localizer::Impl::believe_prior() {
+  state = State::kConfirming;
+  vouched = true;
 }
 
 void Localizer::Impl::believe_nothing() {
   state = State::kSearching;
-  was_sure = false;
+  was_sure = vouched = false;
   evidence = {};
   misses = 0;
   doubt = false;
@@ -103,9 +110,10 @@ void Localizer::Impl::on_frame(const CameraFrame& frame, FeatureSet features) {
   finder.fade();
   if (!motion.planar()) finder.forget_candidates();  // nothing ties one view to the next
   const bool goes_on = continuity.follows(view.frame, odom_from_base(view.frame.time_s));
+  const bool told = frames == 1 && vouched;  // the first view goes on from what was said
   if (!goes_on) jumped_s = frame.time_s;
   const bool jumps = !goes_on && !broken;  // once: a view that tells nothing never goes on
-  broken |= !goes_on || !motion.planar();
+  broken |= (!goes_on && !told) || !motion.planar();
   const bool is_new = finder.see(view.frame.time_s, odom_from_base(view.frame.time_s), view.scan,
                                  view.frame.depth, view.frame.depth_unit_m, jumps);
   const bool believed_before = state != State::kSearching;
@@ -124,6 +132,7 @@ void Localizer::Impl::on_frame(const CameraFrame& frame, FeatureSet features) {
   if (state == State::kConfirming && is_convincing()) {
     state = State::kTracking;
     was_sure = true;
+    vouched = false;
     prior.reset();  // it has done its work; from here on the map decides
   }
 }

@@ -35,6 +35,7 @@ struct Localizer::Impl {
 
   void expect_near(const PosePrior& given);
   void begin(double time_s);
+  void believe_prior();
   void on_frame(const mrpt::obs::CObservation3DRangeScan& scan);
   void on_frame(const CameraFrame& frame, FeatureSet features);
   void note_interval(double time_s);
@@ -60,6 +61,7 @@ struct Localizer::Impl {
   void believe_nothing();
   void lose(double time_s);
   void drop_guess(double time_s);
+  bool within_reach(double time_s, const Se3& map_from_base);
   bool camera_is_silent(double time_s) const;
   PoseEstimate estimate(double time_s);
 
@@ -75,6 +77,7 @@ struct Localizer::Impl {
   ViewSlide slide;
   std::optional<PoseRegion> prior;
   double prior_sigma_m = 0.0, prior_sigma_rad = 0.0;
+  bool vouched = false;  ///< the prior speaks for the pose believed, or for the view known there
 
   State state = State::kSearching;
   bool begun = false;

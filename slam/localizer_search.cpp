@@ -21,6 +21,7 @@ constexpr int kSureScanPoints = 60;
 constexpr int kSureFramesByWalls = 30;
 constexpr double kTellingMargin = 0.04;  // makes up for a scan that shows less
 constexpr double kBetterHeld = 0.03;     // of the local scan: walls in one view alone have misled
+constexpr double kReachSigmas = 3.0;
 constexpr double kRefutedConfidence = 0.05;
 constexpr double kNoShapeMargin = 0.1;
 constexpr double kWorseThanRival = -0.05;
@@ -139,7 +140,16 @@ void Localizer::Impl::judge_places(const SeenView& view, bool is_new) {
   const Se3 place = best->map_from_odom * odom;
   const bool there = state != State::kSearching &&
                      (place.translation - believed(time_s).translation).norm() < kSamePlaceM;
-  if (there && evidence.inliers == 0 && best->scan_share > evidence.scan_share + kBetterHeld) {
+  if (vouched) {
+    // What was said of the start is worth more than walls that fit a little better elsewhere.
+    if (best->recognitions > 0.0 && misses > 0) {
+      adopt(time_s, place);
+      vouched = true;
+    }
+    return;
+  }
+  if (there && evidence.inliers == 0 && best->scan_share > evidence.scan_share + kBetterHeld &&
+      within_reach(time_s, place)) {
     motion.place(time_s, place, kFixSigmaM, kFixSigmaRad);
   }
   if (there || (matches_here() && best->recognitions <= evidence.recognitions)) return;
@@ -149,6 +159,14 @@ void Localizer::Impl::judge_places(const SeenView& view, bool is_new) {
   } else if (broken) {
     lose(time_s);
   }
+}
+
+/// Whether the rover can be there, by what wheels and gyro say. A place being confirmed may be as
+/// far off as all that was matched so far.
+bool Localizer::Impl::within_reach(double time_s, const Se3& map_from_base) {
+  if (!was_sure) return true;
+  const double away_m = (map_from_base.translation - believed(time_s).translation).norm();
+  return away_m <= kReachSigmas * motion.predict(time_s).sigma_position_m;
 }
 
 /// Views that match say more than a little more of shape elsewhere; than much more they do not.
@@ -161,7 +179,7 @@ void Localizer::Impl::adopt(double time_s, const Se3& map_from_base) {
   motion.place(time_s, map_from_base, kFixSigmaM, kFixSigmaRad);
   has_pose = true;
   state = State::kConfirming;
-  was_sure = false;
+  was_sure = vouched = false;
   misses = 0;
   broken = false;  // before this: the place is judged by what was seen since
   doubt = false;
@@ -197,7 +215,7 @@ double Localizer::Impl::frames_to_be_sure() const {
 bool Localizer::Impl::is_convincing() const {
   if (evidence.agreeing_frames < config.localizer.confirmation_frames) return false;
   // Blind for a moment only, or told where to look: that speaks for the place, too.
-  if (was_sure || prior) {
+  if (was_sure || vouched) {
     return evidence.scan_share >= kStillScanShare && evidence.rival_share <= kMostRival &&
            evidence.shape_margin >= kWorseThanRival;
   }

@@ -4,6 +4,7 @@
 
 #include "app/commands/options.h"
 #include "app/drive_outcome.h"
+#include "app/drive_recovery.h"
 #include "app/ground.h"
 #include "app/plan_query.h"
 #include "app/report/drive_report.h"
@@ -75,19 +76,22 @@ int run_drive(const DriveOptions& options) {
       config, map, ground.world_from_map, simulator, simulation.scenario);
 
   control::TrajectoryTracker tracker(config.control, config.robot, plan.result.trajectory);
-  if (pose_kind == "slam" && !look_around(simulator, *poses, start)) {
-    console.warn("the start was not recognised, not even by looking around");
-  }
+  Replanner replanner(map, config, request, plan.result.trajectory);
   control::DriveLog log;
   {
     Progress progress("driving");
-    log = drive_in_simulator(
-        simulator, ground.world_from_map, *poses, tracker, plan.result.trajectory.duration_s(),
-        config, {.progress = [&](double share) { progress.update(share); }, .observation = {}});
+    DriveHooks hooks;
+    hooks.progress = [&](double share) { progress.update(share); };
+    if (finds_itself(pose_kind)) hooks.recovery = replanner.recovery();
+    log = drive_in_simulator(simulator, ground.world_from_map, *poses, tracker,
+                             plan.result.trajectory.duration_s(), config, hooks);
+  }
+  if (!log.start_known) {
+    console.warn("the start was not recognised, not even by looking around");
   }
   const control::CommandLimits limits{config.robot.max_speed_m_s, config.robot.max_yaw_rate_rad_s};
-  const control::DriveMetrics metrics = control::measure(log, plan.result.trajectory, request.goal,
-                                                         request.goal_heading_given, limits);
+  const control::DriveMetrics metrics =
+      control::measure(log, replanner.planned(), request.goal, request.goal_heading_given, limits);
   const Outcome outcome = outcome_of(log, metrics);
   const auto object = drive_json(outcome, log, metrics);
 
@@ -100,7 +104,7 @@ int run_drive(const DriveOptions& options) {
     report.grid = map.grid;
     report.layers = plan_layers(request, plan.result);
     report.layers.costmap = planner.costmap();
-    report.planned = plan.result.trajectory;
+    report.planned = replanner.planned();
     report.log = log;
     report.metrics = metrics;
     report.limits = limits;

@@ -4,6 +4,7 @@
 
 #include "app/console.h"
 #include "app/drive_outcome.h"
+#include "app/drive_recovery.h"
 #include "app/ground.h"
 #include "app/resources.h"
 #include "app/simulated_drive.h"
@@ -30,6 +31,14 @@ std::unique_ptr<control::DriveController> make_controller(const TrackCase& what,
   const double time_limit_s =
       config.control.timeout_factor * planned.duration_s() + config.control.timeout_extra_s;
   return std::make_unique<control::ReferenceDrive>(reference, planned, time_limit_s);
+}
+
+/// From where a drive that lost its way finds itself, to the end.
+planning::PlanRequest way_left(const PlannedTrack& track) {
+  planning::PlanRequest request;
+  request.goal = track.trajectory.points.back().pose;
+  request.goal_heading_given = true;
+  return request;
 }
 
 }  // namespace
@@ -98,7 +107,7 @@ std::shared_ptr<const PlannedTrack> TrackBench::plan(const TrackCase& what) cons
                    config_at(what.speed_m_s), what.seed));
 }
 
-control::DriveLog TrackBench::drive(const TrackCase& what, const PlannedTrack& track) const {
+control::DriveLog TrackBench::drive(const TrackCase& what, PlannedTrack& track) const {
   const TrackGroup& group = suite_.groups[what.group];
   const RovigoConfig config = config_at(what.speed_m_s);
   sim::SimulatorOptions simulation;
@@ -114,18 +123,22 @@ control::DriveLog TrackBench::drive(const TrackCase& what, const PlannedTrack& t
       {.kind = group.pose, .map_name = what.trajectory, .start = track.start, .seed = what.seed},
       config, track.map ? *track.map : none, track.world_from_map, simulator, simulation.scenario);
   const auto controller = make_controller(what, config, track.trajectory);
-  // Not recognised: the drive then says that the pose is lost.
-  if (group.pose == "slam") look_around(simulator, *poses, track.start);
-  return drive_in_simulator(simulator, track.world_from_map, *poses, *controller,
-                            track.trajectory.duration_s(), config, {});
+  Replanner replanner(track.map ? *track.map : none, config, way_left(track), track.trajectory);
+  DriveHooks hooks;
+  if (finds_itself(group.pose)) hooks.recovery = replanner.recovery();
+  control::DriveLog log = drive_in_simulator(simulator, track.world_from_map, *poses, *controller,
+                                             track.trajectory.duration_s(), config, hooks);
+  track.trajectory = replanner.planned();
+  return log;
 }
 
 TrackRun TrackBench::run(const TrackCase& what) const {
   const maps::RobotModel robot = config_at(what.speed_m_s).robot;
   TrackRun run;
   run.what = what;
-  run.track = plan(what);
-  run.log = drive(what, *run.track);
+  PlannedTrack track = *plan(what);
+  run.log = drive(what, track);
+  run.track = std::make_shared<const PlannedTrack>(std::move(track));
   const planning::Trajectory& planned = run.track->trajectory;
   run.metrics = control::measure(run.log, planned, planned.points.back().pose, true,
                                  {robot.max_speed_m_s, robot.max_yaw_rate_rad_s});

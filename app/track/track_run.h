@@ -41,7 +41,8 @@ class TrackBench {
   PlannedTrack plan_ahead(const std::string& trajectory, const RovigoConfig& config) const;
   void open_ground(const TrackGroup& group, const std::string& trajectory);
   std::shared_ptr<const PlannedTrack> plan(const TrackCase& what) const;
-  control::DriveLog drive(const TrackCase& what, const PlannedTrack& track) const;
+  /// Leaves in `track` what was followed in the end.
+  control::DriveLog drive(const TrackCase& what, PlannedTrack& track) const;
 
   TrackSuite suite_;
   RovigoConfig config_;

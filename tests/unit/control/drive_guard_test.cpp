@@ -142,5 +142,24 @@ TEST(DriveGuard, BeforeTheFirstPoseNothingMoves) {
   EXPECT_EQ(guard.cause(), StopCause::kNoPoses);
 }
 
+TEST_F(Guard, LetsARoverThatLooksForItsPoseTurnButNotDrive) {
+  for (int i = 1; i < 600; ++i) {
+    GuardInput in = well(10.0 + i * kStepS);
+    in.pose.quality = PoseQuality::kLost;
+    in.looks_around = true;
+    const TTwist2D command = guard_.pass(in);
+    EXPECT_EQ(command.vx, 0.0);
+    EXPECT_EQ(command.omega, kSetPoint.omega);
+  }
+}
+
+TEST_F(Guard, HoldsARoverThatLooksAroundOnALowBattery) {
+  const double zero_s = time_to_zero(10.0, [](GuardInput& in) {
+    in.looks_around = true;
+    in.battery_v = 9.0;
+  });
+  EXPECT_NEAR(zero_s, kStepS, 1e-9);
+}
+
 }  // namespace
 }  // namespace rovigo::control

@@ -96,6 +96,33 @@ TEST(Localizer, WallsAloneHoldAPlaceItWasTold) {
   EXPECT_NE(watcher.last.health, Health::kLost);
 }
 
+/// A hall with pillars along one wall, all alike.
+DepthRoom pillared_hall() {
+  constexpr double kEveryM = 0.8, kDeepM = 0.25, kWideM = 0.2;
+  std::vector<test::WallSegment> walls = {
+      {{0, 0}, {12, 0}}, {{12, 0}, {12, 9}}, {{12, 9}, {0, 9}}, {{0, 9}, {0, 0}}};
+  for (double x = kEveryM; x < 11.5; x += kEveryM) {
+    walls.push_back({{x, 0}, {x, kDeepM}});
+    walls.push_back({{x, kDeepM}, {x + kWideM, kDeepM}});
+    walls.push_back({{x + kWideM, kDeepM}, {x + kWideM, 0}});
+  }
+  return DepthRoom(walls);
+}
+
+// What stands around fits as well a pillar further: that is no reason to leave the place that
+// somebody has named.
+TEST(Localizer, StaysWhereItWasToldThoughWallsFitElsewhereToo) {
+  const DepthRoom hall = pillared_hall();
+  for (const double x : {4.3, 5.0, 6.6, 7.1}) {
+    const TPose2D start{x, 1.6, -1.4};
+    Watcher watcher(hall, start);
+    for (int i = 0; i < 20; ++i) watcher.sees(hall, start, 400);
+    EXPECT_NEAR(watcher.last.map_from_base.x(), start.x, 0.05);
+    EXPECT_NEAR(watcher.last.map_from_base.y(), start.y, 0.05);
+    EXPECT_NE(watcher.last.health, Health::kLost);
+  }
+}
+
 // Carried before a blank wall: few features, which is no contradiction; walls elsewhere are.
 TEST(Localizer, IsLostSoonWhereWallsContradictThoughTheViewShowsNoFeatures) {
   const DepthRoom room = test::odd_room();
