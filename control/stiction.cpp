@@ -22,7 +22,7 @@ double noise_of(double sigma) { return kSigmas * std::sqrt(2.0) * sigma; }
 void StictionEstimator::expect(const TTwist2D& command, const TTwist2D& modelled, double dt_s) {
   if (!window_ || !(dt_s > 0.0)) return;
   const double rim = std::abs(command.vx) + std::abs(command.omega) * half_track_m_;
-  if (rim > kNearDeadZone * dead_zone_m_s_) {  // at the edge is where a stall tells something
+  if (rim > kNearDeadZone * kHighest) {  // no dead zone explains a stall at such a command
     window_.reset();
     return;
   }

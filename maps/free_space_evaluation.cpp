@@ -5,8 +5,22 @@
 
 namespace rovigo::maps {
 
+namespace {
+
+bool stops(const OccupancyGrid& grid, const TPoint2D& p) {
+  const Cell c = grid.geometry.cell_at(p);
+  return !grid.geometry.contains(c) || !OccupancyGrid::is_free(grid.at(c));
+}
+
+}  // namespace
+
 std::vector<bool> cells_in_view(const OccupancyGrid& truth, const std::vector<View>& views,
                                 const FieldOfView& field) {
+  return cells_in_view(truth, truth, views, field);
+}
+
+std::vector<bool> cells_in_view(const OccupancyGrid& truth, const OccupancyGrid& tall,
+                                const std::vector<View>& views, const FieldOfView& field) {
   const auto& g = truth.geometry;
   std::vector<bool> seen(g.size(), false);
   const double step_m = 0.5 * g.resolution_m;
@@ -16,11 +30,12 @@ std::vector<bool> cells_in_view(const OccupancyGrid& truth, const std::vector<Vi
     for (double a = -field.right_rad; a <= field.left_rad; a += step_rad) {
       const double dx = std::cos(at.phi + a), dy = std::sin(at.phi + a);
       std::vector<std::size_t> passed;
-      bool met = false;
+      bool blocked = false, met = false;
       for (double way_m = 0.0; way_m <= field.range_m && !met; way_m += step_m) {
-        const Cell c = g.cell_at(TPoint2D{at.x + way_m * dx, at.y + way_m * dy});
-        met = !g.contains(c) || !OccupancyGrid::is_free(truth.at(c));
-        if (!met) passed.push_back(g.index_of(c));
+        const TPoint2D p{at.x + way_m * dx, at.y + way_m * dy};
+        blocked = blocked || stops(truth, p);
+        met = blocked && stops(tall, p);
+        if (!blocked) passed.push_back(g.index_of(g.cell_at(p)));
       }
       const auto floor = static_cast<std::size_t>(std::max(0.0, field.floor_range_m) / step_m);
       if (!met) passed.resize(std::min(passed.size(), floor));

@@ -25,6 +25,12 @@ struct FieldOfView {
 std::vector<bool> cells_in_view(const OccupancyGrid& truth, const std::vector<View>& views,
                                 const FieldOfView& field);
 
+/// The same where low obstacles do not stop every ray: those over a low table may meet nothing, and
+/// do not tell then whether something hangs before it. `tall`: what reaches up to the greatest
+/// height asked for; same frame, any geometry.
+std::vector<bool> cells_in_view(const OccupancyGrid& truth, const OccupancyGrid& tall,
+                                const std::vector<View>& views, const FieldOfView& field);
+
 /// Of the cells that are free in truth and were in view, or that `estimate` calls free, the share
 /// that is free in both.
 std::optional<double> free_iou_in_view(const OccupancyGrid& estimate, const OccupancyGrid& truth,

@@ -81,6 +81,20 @@ TEST(ControlOnSimulator, TracksWithSlipOnPoorAndLatePoses) {
   }
 }
 
+TEST(ControlOnSimulator, WheelsThatStickBelowATenthOfAMetrePerSecondDoNotStopIt) {
+  SimulatedDrive setup;
+  setup.scenario = sim::Scenario();
+  setup.scenario.motor.dead_zone_m_s = 0.1;  // twice what the controller takes it for
+  setup.poses = {.latency_s = 0.05, .position_noise_m = 0.01, .heading_noise_rad = 0.01};
+  for (const std::uint64_t seed : {1, 2}) {
+    setup.seed = seed;
+    expect_all_tracked(setup, {.cross_track_rms_m = 0.02,
+                               .cross_track_max_m = 0.06,
+                               .final_position_m = 0.03,
+                               .final_heading_rad = 0.06});
+  }
+}
+
 TEST(ControlOnSimulator, RandomMissionsOnPoorPosesAllArrive) {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) expect_mission_done(seed);
 }

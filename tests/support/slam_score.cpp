@@ -7,6 +7,7 @@
 #include "app/resources.h"
 #include "maps/map_evaluation.h"
 #include "maps/ros_map.h"
+#include "sim/simulator.h"
 #include "slam/trajectory_evaluation.h"
 #include "tests/support/grid_checks.h"
 
@@ -20,6 +21,7 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kSameTimeS = 1e-3;
+constexpr double kTallSliceM = 0.03;  // what reaches into it stops the rays at every height
 constexpr TPoint2D kCorridorMiddle{15.0, 2.5};  // of sim/worlds/corridor.sdf
 constexpr double kCorridorSpreadM = 0.3;        // within its doors
 
@@ -172,11 +174,15 @@ void score_grid(const SlamRun& run, const Truth& all_truth, const sim::Scenario&
   score.precision_2 = within_2.precision;
   score.recall_2 = within_2.recall;
   score.free_iou = within_2.free_iou;
-  const auto in_view =
-      maps::cells_in_view(truth, true_views(run, all_truth), field_of(run.map.metadata, scenario));
+  const sim::World world = app::open_world(simulation.world);
+  const slam::GridConfig heights;
+  const maps::OccupancyGrid tall =
+      sim::true_grid(world, truth.geometry.resolution_m,
+                     heights.obstacle_max_height_m - kTallSliceM, heights.obstacle_max_height_m);
+  const auto in_view = maps::cells_in_view(truth, tall, true_views(run, all_truth),
+                                           field_of(run.map.metadata, scenario));
   score.free_iou_in_view = maps::free_iou_in_view(run.map.grid, truth, truth_from_map, in_view);
   score.ghost_cells = ghost_cells(run.map.grid, truth, truth_from_map);
-  const sim::World world = app::open_world(simulation.world);
   score.low_table_share = low_table_share(run.map.grid, truth, truth_from_map, world);
   score.low_table_free = low_table_free_cells(run.map.grid, truth_from_map, world);
   if (world.name() != "corridor") return;

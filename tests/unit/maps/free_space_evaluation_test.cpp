@@ -45,6 +45,22 @@ TEST(FreeSpaceEvaluation, WithoutAReturnOnlyTheFloorNearbyIsKnown) {
   EXPECT_FALSE(high[0]);
 }
 
+TEST(FreeSpaceEvaluation, BeforeALowTableTheGroundIsToldOnlyWhereSomethingTallStandsBehind) {
+  const OccupancyGrid tall = corridor();
+  OccupancyGrid truth = tall;
+  for (int y = 0; y < 10; ++y) truth.at({30, y}) = OccupancyGrid::kOccupied;
+  FieldOfView field = kField;
+  const std::vector<View> views{{TPose2D(1.05, 0.55, 0.0)}};
+  const auto walled = cells_in_view(truth, tall, views, field);
+  EXPECT_TRUE(walled[truth.geometry.index_of({25, 5})]);
+  EXPECT_FALSE(walled[truth.geometry.index_of({35, 5})]);  // hidden by the table
+  field.range_m = 2.5;
+  const auto open = cells_in_view(truth, tall, views, field);
+  EXPECT_FALSE(open[truth.geometry.index_of({25, 5})]);
+  EXPECT_TRUE(open[truth.geometry.index_of({15, 5})]);
+  EXPECT_TRUE(cells_in_view(truth, views, field)[truth.geometry.index_of({25, 5})]);
+}
+
 TEST(FreeSpaceEvaluation, RoomsNeverSeenAreNotAskedForButWhatIsClaimedThereIsJudged) {
   const OccupancyGrid truth = corridor();
   const auto seen = cells_in_view(truth, {{TPose2D(1.05, 0.55, 0.0)}}, kField);
