@@ -172,7 +172,12 @@ PlanResult DrivePlanner::refuse_unseen(const PlanRequest& request, PlanResult re
                       nearest_hint(refused.nearest_reachable_goal);
     return refused;
   }
-  if (plain.status == refused.status) refused.message = plain.message;
+  if (plain.status != refused.status) return refused;
+  // What is wrong in plain words, but the way out as drives have it.
+  refused.message = plain.message;
+  const std::string hint = nearest_hint(plain.nearest_reachable_goal);
+  if (refused.message.ends_with(hint)) refused.message.resize(refused.message.size() - hint.size());
+  refused.message += nearest_hint(refused.nearest_reachable_goal);
   return refused;
 }
 

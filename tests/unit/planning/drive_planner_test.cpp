@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "planning/footprint_check.h"
+#include "planning/refusal.h"
 #include "tests/unit/planning/grids.h"
 
 namespace rovigo::planning {
@@ -90,6 +91,20 @@ TEST(DrivePlanner, RefusesAGoalInAStripOfSeenGroundNarrowerThanTheRover) {
   EXPECT_THAT(driven.message, HasSubstr("nobody has seen"));
   ASSERT_TRUE(driven.nearest_reachable_goal.has_value());
   EXPECT_LT(driven.nearest_reachable_goal->x, 3.0);
+}
+
+// The goal stands in an obstacle; near to it there is ground that plans may end on and drives not.
+TEST(DrivePlanner, NamesAPlaceThatDrivesReachWhereTheGoalIsAnObstacle) {
+  auto grid = room(8, 4);
+  fill(grid, 3.0, 0.0, 8.0, 4.0, maps::OccupancyGrid::kUnknown);
+  fill(grid, 3.0, 1.6, 7.0, 2.2, maps::OccupancyGrid::kFree);
+  fill(grid, 6.0, 1.6, 7.0, 2.2, maps::OccupancyGrid::kOccupied);
+  const PlanResult refused = planner_for(grid).plan(from_to({1, 1.9}, {6.5, 1.9}));
+  EXPECT_EQ(refused.status, PlanStatus::kGoalOccupied) << refused.message;
+  ASSERT_TRUE(refused.nearest_reachable_goal.has_value());
+  const TPoint2D named = *refused.nearest_reachable_goal;
+  EXPECT_THAT(refused.message, HasSubstr(text_of(named)));
+  EXPECT_EQ(planner_for(grid).plan(from_to({1, 1.9}, named)).status, PlanStatus::kOk);
 }
 
 TEST(DrivePlanner, WhereARoverHasBeenNothingStands) {
