@@ -81,6 +81,70 @@ planning::Trajectory axis(double length_m) {
   return out;
 }
 
+sim::SimulatorOptions simulation_of(const DockOptions& options, const RovigoConfig& config,
+                                    const sim::World& world) {
+  sim::SimulatorOptions simulation;
+  simulation.robot = config.robot;
+  simulation.scenario = open_scenario(options.scenario);
+  simulation.world_from_base =
+      options.start ? parse_pose("--start", *options.start).pose : world.start();
+  simulation.seed = options.seed;
+  simulation.camera_rate_hz = 1.0 / config.docking.sample_time_s;
+  return simulation;
+}
+
+nlohmann::ordered_json dock_json(const Outcome& outcome, const DockDrive& dock,
+                                 const control::DriveMetrics& metrics, int marker) {
+  return {{"status", outcome.status},
+          {"code", outcome.code},
+          {"message", outcome.message},
+          {"marker", marker},
+          {"sightings", dock.sightings},
+          {"attempts", dock.attempts},
+          {"driven_length_m", metrics.driven_length_m},
+          {"duration_s", metrics.duration_s},
+          {"overshoot_m", metrics.overshoot_m},
+          {"final_position_error_m", metrics.final_position_error_m},
+          {"final_heading_error_rad", metrics.final_heading_error_rad},
+          {"estimate_rms_m", metrics.estimate_rms_m},
+          {"collisions", dock.log.contact_events},
+          {"log_hash", log_hash(dock.log)}};
+}
+
+std::vector<Row> dock_rows(const DockDrive& dock, const control::DriveMetrics& metrics) {
+  return {{"at the dock", with_unit(metrics.final_position_error_m, 4, "m") + ", " +
+                              with_unit(metrics.final_heading_error_rad, 4, "rad")},
+          {"overshoot", with_unit(metrics.overshoot_m, 4, "m")},
+          {"driven", with_unit(metrics.driven_length_m, 2, "m") + ", " +
+                         with_unit(metrics.duration_s, 1, "s") +
+                         ", attempts: " + std::to_string(dock.attempts)},
+          {"sightings", std::to_string(dock.sightings)},
+          {"collisions", std::to_string(dock.log.contact_events)},
+          {"log hash", log_hash(dock.log)}};
+}
+
+/// What the report says apart from where the world and its rover are.
+DriveReportInput dock_report(const DockOptions& options, const Outcome& outcome,
+                             const DockDrive& dock, const control::DriveMetrics& metrics,
+                             int marker) {
+  DriveReportInput report;
+  report.title = "Docking at marker " + std::to_string(marker);
+  report.summary = outcome.message;
+  report.succeeded = outcome.code == 0;
+  report.metrics = metrics;
+  report.checks = {{"Distance from the dock", metrics.final_position_error_m, kDockedM, "m"},
+                   {"Heading error", metrics.final_heading_error_rad, kDockedRad, "rad"},
+                   {"Collisions", static_cast<double>(dock.log.contact_events), 0.0, ""}};
+  report.facts = {{"World", options.world},
+                  {"Marker", std::to_string(marker)},
+                  {"Attempts", std::to_string(dock.attempts)},
+                  {"Sightings", std::to_string(dock.sightings)},
+                  {"Scenario", options.scenario},
+                  {"Seed", std::to_string(options.seed)}};
+  report.drive_json = dock_json(outcome, dock, metrics, marker).dump(2);
+  return report;
+}
+
 }  // namespace
 
 int run_dock(const DockOptions& options) {
@@ -91,13 +155,7 @@ int run_dock(const DockOptions& options) {
   const TPose2D world_from_dock =
       maps::compose(marker.world_from_face, {config.docking.standoff_m, 0.0, maps::kPi});
 
-  sim::SimulatorOptions simulation;
-  simulation.robot = config.robot;
-  simulation.scenario = open_scenario(options.scenario);
-  simulation.world_from_base =
-      options.start ? parse_pose("--start", *options.start).pose : world.start();
-  simulation.seed = options.seed;
-  simulation.camera_rate_hz = 1.0 / config.docking.sample_time_s;
+  const sim::SimulatorOptions simulation = simulation_of(options, config, world);
   sim::Simulator simulator(world, simulation);
 
   const TPose2D dock_from_start =
@@ -111,25 +169,8 @@ int run_dock(const DockOptions& options) {
   const control::CommandLimits limits{config.robot.max_speed_m_s, config.robot.max_yaw_rate_rad_s};
   const control::DriveMetrics metrics = control::measure(dock.log, plan, TPose2D(), true, limits);
   const Outcome outcome = dock_outcome(dock, metrics, marker.id);
-  nlohmann::ordered_json object{{"status", outcome.status},
-                                {"code", outcome.code},
-                                {"message", outcome.message},
-                                {"marker", marker.id},
-                                {"sightings", dock.sightings},
-                                {"attempts", dock.attempts},
-                                {"driven_length_m", metrics.driven_length_m},
-                                {"duration_s", metrics.duration_s},
-                                {"overshoot_m", metrics.overshoot_m},
-                                {"final_position_error_m", metrics.final_position_error_m},
-                                {"final_heading_error_rad", metrics.final_heading_error_rad},
-                                {"estimate_rms_m", metrics.estimate_rms_m},
-                                {"collisions", dock.log.contact_events},
-                                {"log_hash", log_hash(dock.log)}};
   if (options.report) {
-    DriveReportInput report;
-    report.title = "Docking at marker " + std::to_string(marker.id);
-    report.summary = outcome.message;
-    report.succeeded = outcome.code == 0;
+    DriveReportInput report = dock_report(options, outcome, dock, metrics, marker.id);
     report.grid = obstacle_grid(world, config);
     report.layers.start = simulation.world_from_base;
     report.layers.goal = world_from_dock;
@@ -137,31 +178,12 @@ int run_dock(const DockOptions& options) {
     for (auto& point : plan.points) point.pose = maps::compose(world_from_dock, point.pose);
     report.planned = plan;
     report.log = in_world(dock.log, world_from_dock);
-    report.metrics = metrics;
     report.limits = limits;
-    report.checks = {{"Distance from the dock", metrics.final_position_error_m, kDockedM, "m"},
-                     {"Heading error", metrics.final_heading_error_rad, kDockedRad, "rad"},
-                     {"Collisions", static_cast<double>(dock.log.contact_events), 0.0, ""}};
-    report.facts = {{"World", options.world},
-                    {"Marker", std::to_string(marker.id)},
-                    {"Attempts", std::to_string(dock.attempts)},
-                    {"Sightings", std::to_string(dock.sightings)},
-                    {"Scenario", options.scenario},
-                    {"Seed", std::to_string(options.seed)}};
-    report.drive_json = object.dump(2);
     write_drive_report(*options.report, report);
     console.say("report: " + (*options.report / "index.html").string());
   }
-  console.result(object, outcome.message,
-                 {{"at the dock", with_unit(metrics.final_position_error_m, 4, "m") + ", " +
-                                      with_unit(metrics.final_heading_error_rad, 4, "rad")},
-                  {"overshoot", with_unit(metrics.overshoot_m, 4, "m")},
-                  {"driven", with_unit(metrics.driven_length_m, 2, "m") + ", " +
-                                 with_unit(metrics.duration_s, 1, "s") +
-                                 ", attempts: " + std::to_string(dock.attempts)},
-                  {"sightings", std::to_string(dock.sightings)},
-                  {"collisions", std::to_string(dock.log.contact_events)},
-                  {"log hash", log_hash(dock.log)}});
+  console.result(dock_json(outcome, dock, metrics, marker.id), outcome.message,
+                 dock_rows(dock, metrics));
   return outcome.code == 0 ? kDone : kDidNotSucceed;
 }
 
