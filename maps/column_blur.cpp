@@ -16,46 +16,52 @@ constexpr int kHighBits = 9;  // of a sum of up to 100 in 16 bits, below the poi
 using Sums [[gnu::vector_size(kBlurBlock * sizeof(std::uint16_t))]] = std::uint16_t;
 using Cells [[gnu::vector_size(kBlurBlock)]] = std::uint8_t;
 
-/// What the rows on both sides of a block's own add up to; `rows` from the lowest of 2 radius + 1.
+/// The weights of both sides, and where a sum of theirs is cut.
+struct FixedWeights {
+  const std::uint16_t* high;
+  const std::uint16_t* low;
+  std::size_t radius;
+  int low_bits;
+  int doubtful;
+};
+
+struct BlockSums {
+  int sums[kBlurBlock];  ///< in 2^-(kHighBits + low_bits)
+  int doubtful;          ///< how many are too near a whole number
+  int least, greatest;   ///< cut down
+};
+
+/// A block's sums over the rows on both sides of its own; `rows` from the lowest of 2 radius + 1.
+/// `values`: the sums cut down.
 ROVIGO_SIMD_CLONES void add_rows(const std::uint8_t* const* rows, std::size_t begin,
-                                 std::size_t radius, const std::uint16_t* high,
-                                 const std::uint16_t* low, int low_bits, int* sums) {
+                                 const FixedWeights& w, BlockSums& out, float* values) {
   Cells below, above;
-  std::memcpy(&below, rows[radius] + begin, sizeof(Cells));
+  std::memcpy(&below, rows[w.radius] + begin, sizeof(Cells));
   Sums ones = __builtin_convertvector(below, Sums);
-  Sums high_sum = ones * high[0];
-  Sums low_sum = ones * low[0];
-  for (std::size_t j = radius; j > 0; --j) {
-    std::memcpy(&below, rows[radius - j] + begin, sizeof(Cells));
-    std::memcpy(&above, rows[radius + j] + begin, sizeof(Cells));
+  Sums high_sum = ones * w.high[0];
+  Sums low_sum = ones * w.low[0];
+  for (std::size_t j = w.radius; j > 0; --j) {
+    std::memcpy(&below, rows[w.radius - j] + begin, sizeof(Cells));
+    std::memcpy(&above, rows[w.radius + j] + begin, sizeof(Cells));
     ones = __builtin_convertvector(below + above, Sums);
-    high_sum += ones * high[j];
-    low_sum += ones * low[j];
+    high_sum += ones * w.high[j];
+    low_sum += ones * w.low[j];
   }
-  for (std::size_t x = 0; x < kBlurBlock; ++x) sums[x] = (high_sum[x] << low_bits) + low_sum[x];
-}
-
-/// Cuts sums of so many bits below the point down to whole numbers; how many are doubtful.
-ROVIGO_SIMD_CLONES int cut_down(const int* sums, int bits, int doubtful, int* whole) {
+  const int bits = kHighBits + w.low_bits;
   const int fraction = (1 << bits) - 1;
-  int count = 0;
+  int doubtful = 0, least = 255, greatest = 0;
   for (std::size_t x = 0; x < kBlurBlock; ++x) {
-    whole[x] = sums[x] >> bits;
-    count += ((sums[x] + doubtful) & fraction) < 2 * doubtful && sums[x] != 0;
+    const int sum = (high_sum[x] << w.low_bits) + low_sum[x];
+    const int whole = sum >> bits;
+    out.sums[x] = sum;
+    values[x] = static_cast<float>(whole);
+    doubtful += ((sum + w.doubtful) & fraction) < 2 * w.doubtful && sum != 0;
+    least = whole < least ? whole : least;
+    greatest = whole > greatest ? whole : greatest;
   }
-  return count;
-}
-
-/// To floats; the least and the greatest.
-ROVIGO_SIMD_CLONES void convert(const int* whole, float* values, int& least, int& greatest) {
-  int lowest = whole[0], highest = whole[0];
-  for (std::size_t x = 0; x < kBlurBlock; ++x) {
-    values[x] = static_cast<float>(whole[x]);
-    lowest = whole[x] < lowest ? whole[x] : lowest;
-    highest = whole[x] > highest ? whole[x] : highest;
-  }
-  least = lowest;
-  greatest = highest;
+  out.doubtful = doubtful;
+  out.least = least;
+  out.greatest = greatest;
 }
 
 }  // namespace
@@ -156,19 +162,21 @@ void ColumnBlur::next_row(float* values, Range* ranges) {
 }
 
 ColumnBlur::Range ColumnBlur::blur_block(std::size_t begin, float* values) const {
-  const int bits = kHighBits + low_bits_;
-  int sums[kBlurBlock], whole[kBlurBlock];
-  add_rows(rows_.data(), begin, weights_.size() - 1, high_.data(), low_.data(), low_bits_, sums);
-  if (cut_down(sums, bits, doubtful_, whole) > 0) {
+  const FixedWeights w{high_.data(), low_.data(), weights_.size() - 1, low_bits_, doubtful_};
+  BlockSums block;
+  add_rows(rows_.data(), begin, w, block, values);
+  if (block.doubtful > 0) {
+    const int fraction = (1 << (kHighBits + low_bits_)) - 1;
     for (std::size_t x = 0; x < kBlurBlock; ++x) {
-      const int fraction = (sums[x] + doubtful_) & ((1 << bits) - 1);
-      if (sums[x] == 0 || fraction >= 2 * doubtful_) continue;
-      whole[x] = sums[x] == solid_sum_ ? solid_ : blur_exactly(begin + x);
+      const int sum = block.sums[x];
+      if (sum == 0 || ((sum + doubtful_) & fraction) >= 2 * doubtful_) continue;
+      const int value = sum == solid_sum_ ? solid_ : blur_exactly(begin + x);
+      values[x] = static_cast<float>(value);
+      block.least = std::min(block.least, value);
+      block.greatest = std::max(block.greatest, value);
     }
   }
-  int least = 0, greatest = 0;
-  convert(whole, values, least, greatest);
-  return {static_cast<std::uint8_t>(least), static_cast<std::uint8_t>(greatest)};
+  return {static_cast<std::uint8_t>(block.least), static_cast<std::uint8_t>(block.greatest)};
 }
 
 /// In SciPy's order: the centre first, then pairs of neighbours from the farthest inwards.
