@@ -3,14 +3,12 @@
 #include <algorithm>
 
 #include "app/plan_query.h"
-#include "control/tracker.h"
 #include "planning/splice.h"
 
 namespace rovigo::app {
 
-DriveRecovery Replanner::recovery() {
-  return {planned_.points.front().pose.phi,
-          [this](const TPose2D& map_from_base, const control::DriveLog& so_far) {
+DriveRecovery Replanner::recovery(double start_heading_rad) {
+  return {start_heading_rad, [this](const TPose2D& map_from_base, const control::DriveLog& so_far) {
             return plan_anew(map_from_base, so_far);
           }};
 }
@@ -23,8 +21,7 @@ std::unique_ptr<control::DriveController> Replanner::plan_anew(const TPose2D& ma
   const planning::PlanResult plan = drive_planner_on(map_, config_).plan(request_);
   if (plan.status != planning::PlanStatus::kOk || plan.unsafe_samples > 0) return nullptr;
   planned_ = planning::joined(planned_, reached_s(so_far.steps.back().reference), plan.trajectory);
-  return std::make_unique<control::TrajectoryTracker>(config_.control, config_.robot,
-                                                      plan.trajectory);
+  return make_controller_(plan.trajectory);
 }
 
 /// Stops lie on the plan: the reference has been at those that are done.

@@ -1,6 +1,7 @@
 #pragma once
 // What a drive does that lost its pose and found itself again: a new plan for the way that is left.
 
+#include <functional>
 #include <memory>
 
 #include "app/config.h"
@@ -14,13 +15,21 @@ namespace rovigo::app {
 /// outlive it.
 class Replanner {
  public:
-  /// `planned`: what the drive follows so far, an answer to `request`.
+  using MakeController =
+      std::function<std::unique_ptr<control::DriveController>(const planning::Trajectory&)>;
+
+  /// `planned`: what the drive follows so far, an answer to `request`; `make_controller`: what
+  /// follows the rest.
   Replanner(const maps::SavedMap& map, const RovigoConfig& config, planning::PlanRequest request,
-            planning::Trajectory planned)
-      : map_(map), config_(config), request_(std::move(request)), planned_(std::move(planned)) {}
+            planning::Trajectory planned, MakeController make_controller)
+      : map_(map),
+        config_(config),
+        request_(std::move(request)),
+        planned_(std::move(planned)),
+        make_controller_(std::move(make_controller)) {}
 
   /// For DriveHooks; the replanner must outlive the drive.
-  DriveRecovery recovery();
+  DriveRecovery recovery(double start_heading_rad);
 
   /// All that was followed, one way after the other: what the drive is measured against.
   const planning::Trajectory& planned() const { return planned_; }
@@ -35,6 +44,7 @@ class Replanner {
   const RovigoConfig& config_;
   planning::PlanRequest request_;
   planning::Trajectory planned_;
+  MakeController make_controller_;
 };
 
 }  // namespace rovigo::app

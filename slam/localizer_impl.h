@@ -46,6 +46,7 @@ struct Localizer::Impl {
   void recognize(const SeenView& view, const Se3& map_from_base, double weight);
   void look_beside(const SeenView& view, bool recognized);
   bool fits_as_well(double time_s, const Se3& here, const Slide& aside);
+  void put(double time_s, const Se3& map_from_base);
   void step_aside(double time_s, const Se3& map_from_base);
   void adopt(double time_s, const Se3& map_from_base);
   bool hold_by_scan(const SeenView& view, const std::vector<int>& local_landmarks);

@@ -118,10 +118,15 @@ bool Localizer::Impl::fits_as_well(double time_s, const Se3& here, const Slide& 
          finder.support(here, odom).shape - kStepCost;
 }
 
+/// At a place freshly found; what was seen on the way to the old one says nothing of it.
+void Localizer::Impl::put(double time_s, const Se3& map_from_base) {
+  motion.place(time_s, map_from_base, kFixSigmaM, kFixSigmaRad);
+  trail.clear();
+}
+
 /// The same room, but matched one brick too far.
 void Localizer::Impl::step_aside(double time_s, const Se3& map_from_base) {
-  trail.clear();
-  motion.place(time_s, map_from_base, kFixSigmaM, kFixSigmaRad);
+  put(time_s, map_from_base);
   state = State::kConfirming;
   evidence.agreeing_frames = 0;
   tracked.clear();
@@ -151,8 +156,7 @@ void Localizer::Impl::judge_places(const SeenView& view, bool is_new) {
   }
   if (there && evidence.inliers == 0 && best->scan_share > evidence.scan_share + kBetterHeld &&
       within_reach(time_s, place)) {
-    trail.clear();
-    motion.place(time_s, place, kFixSigmaM, kFixSigmaRad);
+    put(time_s, place);
   }
   if (there || (matches_here() && best->recognitions <= evidence.recognitions)) return;
   // Odometry says it cannot be elsewhere: the view has jumped, or it was never there.
@@ -178,8 +182,7 @@ bool Localizer::Impl::matches_here() const {
 }
 
 void Localizer::Impl::adopt(double time_s, const Se3& map_from_base) {
-  trail.clear();
-  motion.place(time_s, map_from_base, kFixSigmaM, kFixSigmaRad);
+  put(time_s, map_from_base);
   has_pose = true;
   state = State::kConfirming;
   was_sure = vouched = false;

@@ -75,15 +75,18 @@ int run_drive(const DriveOptions& options) {
       {.kind = pose_kind, .map_name = options.map.string(), .start = start, .seed = options.seed},
       config, map, ground.world_from_map, simulator, simulation.scenario);
 
-  control::TrajectoryTracker tracker(config.control, config.robot, plan.result.trajectory);
-  Replanner replanner(map, config, request, plan.result.trajectory);
+  const auto make_tracker = [&config](const planning::Trajectory& trajectory) {
+    return std::make_unique<control::TrajectoryTracker>(config.control, config.robot, trajectory);
+  };
+  const auto tracker = make_tracker(plan.result.trajectory);
+  Replanner replanner(map, config, request, plan.result.trajectory, make_tracker);
   control::DriveLog log;
   {
     Progress progress("driving");
     DriveHooks hooks;
     hooks.progress = [&](double share) { progress.update(share); };
-    if (finds_itself(pose_kind)) hooks.recovery = replanner.recovery();
-    log = drive_in_simulator(simulator, ground.world_from_map, *poses, tracker,
+    if (finds_itself(pose_kind)) hooks.recovery = replanner.recovery(start.phi);
+    log = drive_in_simulator(simulator, ground.world_from_map, *poses, *tracker,
                              plan.result.trajectory.duration_s(), config, hooks);
   }
   if (!log.start_known) {

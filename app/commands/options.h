@@ -90,7 +90,7 @@ struct DockOptions : CommonOptions {
 
 struct TrackOptions : CommonOptions {
   std::string suite = "default";
-  std::optional<std::string> pose;  ///< perturbed or truth, instead of what the suite says
+  std::optional<std::string> pose;  ///< instead of what the suite says
   std::optional<std::string> shard;
   std::vector<std::filesystem::path> merge;
   std::optional<unsigned> threads;
@@ -102,7 +102,7 @@ struct TuneOptions : CommonOptions {
   std::string suite = "tuning";
   std::string method = "optimise";   ///< or "relay"
   std::string scenario = "default";  ///< of the relay experiment
-  std::optional<std::string> pose;   ///< perturbed or truth, instead of what the suite says
+  std::optional<std::string> pose;   ///< instead of what the suite says
   int evaluations = 120;
   std::uint64_t seed = 1;
   std::optional<unsigned> threads;

@@ -122,10 +122,14 @@ control::DriveLog TrackBench::drive(const TrackCase& what, PlannedTrack& track) 
   const auto poses = open_poses(
       {.kind = group.pose, .map_name = what.trajectory, .start = track.start, .seed = what.seed},
       config, track.map ? *track.map : none, track.world_from_map, simulator, simulation.scenario);
-  const auto controller = make_controller(what, config, track.trajectory);
-  Replanner replanner(track.map ? *track.map : none, config, way_left(track), track.trajectory);
+  const auto follower_of = [&](const planning::Trajectory& trajectory) {
+    return make_controller(what, config, trajectory);
+  };
+  const auto controller = follower_of(track.trajectory);
+  Replanner replanner(track.map ? *track.map : none, config, way_left(track), track.trajectory,
+                      follower_of);
   DriveHooks hooks;
-  if (finds_itself(group.pose)) hooks.recovery = replanner.recovery();
+  if (finds_itself(group.pose)) hooks.recovery = replanner.recovery(track.start.phi);
   control::DriveLog log = drive_in_simulator(simulator, track.world_from_map, *poses, *controller,
                                              track.trajectory.duration_s(), config, hooks);
   track.trajectory = replanner.planned();

@@ -75,12 +75,15 @@ Drive drive(double forgets_at_x_m, bool finds_again) {
   options.camera_enabled = false;
   sim::Simulator simulator(world, options);
   ForgetfulPoses poses(simulator, forgets_at_x_m, finds_again);
-  control::TrajectoryTracker tracker(config.control, config.robot, plan.trajectory);
-  Replanner replanner(map, config, request, plan.trajectory);
+  const auto make_tracker = [&config](const planning::Trajectory& trajectory) {
+    return std::make_unique<control::TrajectoryTracker>(config.control, config.robot, trajectory);
+  };
+  const auto tracker = make_tracker(plan.trajectory);
+  Replanner replanner(map, config, request, plan.trajectory, make_tracker);
   DriveHooks hooks;
-  hooks.recovery = replanner.recovery();
+  hooks.recovery = replanner.recovery(request.start.phi);
   Drive out;
-  out.log = drive_in_simulator(simulator, {}, poses, tracker, plan.trajectory.duration_s(), config,
+  out.log = drive_in_simulator(simulator, {}, poses, *tracker, plan.trajectory.duration_s(), config,
                                hooks);
   out.planned = replanner.planned();
   out.metrics = control::measure(out.log, out.planned, request.goal, true, {});
