@@ -124,6 +124,23 @@ std::vector<std::size_t> level_quotas(const FeatureConfig& config) {
   return quotas;
 }
 
+/// Size of a level of the pyramid in whole pixels, as cv::ORB makes it.
+cv::Size level_size(const cv::Size& full, int octave, const FeatureConfig& config) {
+  const double scale = octave_scale(octave, config);
+  return {static_cast<int>(std::lround(full.width / scale)),
+          static_cast<int>(std::lround(full.height / scale))};
+}
+
+/// A corner's place on the full-size image. Levels are whole pixels wide, so that they shrink by a
+/// little more or less than their nominal scale; shrinking maps outer edges to outer edges.
+Eigen::Vector2d on_full_image(const cv::KeyPoint& k, const cv::Size& full,
+                              const FeatureConfig& config) {
+  const double nominal = octave_scale(k.octave, config);
+  const cv::Size level = level_size(full, k.octave, config);
+  return {(k.pt.x / nominal + 0.5) * full.width / level.width - 0.5,
+          (k.pt.y / nominal + 0.5) * full.height / level.height - 0.5};
+}
+
 std::vector<cv::KeyPoint> find_keypoints(const cv::Mat& gray, const FeatureConfig& config) {
   const std::vector<std::size_t> quotas = level_quotas(config);
   std::vector<cv::KeyPoint> keypoints;
@@ -132,8 +149,7 @@ std::vector<cv::KeyPoint> find_keypoints(const cv::Mat& gray, const FeatureConfi
     const double scale = octave_scale(l, config);
     if (l > 0) {
       cv::Mat smaller;
-      const cv::Size size(static_cast<int>(std::lround(gray.cols / scale)),
-                          static_cast<int>(std::lround(gray.rows / scale)));
+      const cv::Size size = level_size(gray.size(), l, config);
       if (size.width < 3 * kBorderPx || size.height < 3 * kBorderPx) break;
       cv::resize(level, smaller, size, 0, 0, cv::INTER_LINEAR);
       level = smaller;
@@ -212,9 +228,7 @@ FeatureSet extract_features(const CameraFrame& frame, const CameraModel& camera,
   descriptors.reserve(keypoints.size());
   for (std::size_t i = 0; i < keypoints.size(); ++i) {
     const cv::KeyPoint& k = keypoints[i];
-    // Shrinking maps pixel centres to pixel centres: x = (x_level + 1/2) scale - 1/2.
-    const double shift = 0.5 * (octave_scale(k.octave, config) - 1.0);
-    const Eigen::Vector2d raw(k.pt.x + shift, k.pt.y + shift);
+    const Eigen::Vector2d raw = on_full_image(k, frame.gray.size(), config);
     Feature f;
     f.pixel = at_middle_row(camera.undistort(raw), raw.y(), camera, shutter).cast<float>();
     f.angle_rad = static_cast<float>(k.angle * CV_PI / 180.0);
