@@ -40,6 +40,9 @@ void ranges_to_depths(cv::Mat& depth, const CameraModel& camera) {
   }
 }
 
+// An outline: inverse depth that rises by so many of its sigmas, and by so large a share.
+constexpr double kEdgeSigmas = 10.0, kEdgeShare = 0.06;
+
 }  // namespace
 
 double CameraFrame::depth_at(const Eigen::Vector2d& raw_pixel, const DepthConfig& config) const {
@@ -66,6 +69,30 @@ double CameraFrame::depth_at(const Eigen::Vector2d& raw_pixel, const DepthConfig
     }
   }
   return n >= 4 ? sum / n : 0.0;
+}
+
+bool CameraFrame::is_beside_nearer(const Eigen::Vector2d& raw_pixel, double radius_px,
+                                   const DepthConfig& config) const {
+  const int u = static_cast<int>(std::lround(raw_pixel.x()));
+  const int v = static_cast<int>(std::lround(raw_pixel.y()));
+  const auto inverse_at = [&](int column, int row) {
+    if (column < 0 || row < 0 || column >= depth.cols || row >= depth.rows) return 0.0;
+    const double z = depth.at<std::uint16_t>(row, column) * depth_unit_m;
+    return z > 0 ? 1.0 / z : 0.0;
+  };
+  const double here = depth.empty() ? 0.0 : inverse_at(u, v);
+  if (here == 0.0) return false;
+  // Along a plane inverse depth changes evenly, whatever its slant (and its noise is even, too).
+  const double gate = std::max(kEdgeSigmas * config.sigma_at_1m_m, kEdgeShare * here);
+  const int r = static_cast<int>(std::ceil(radius_px));
+  for (const int step : {r, (r + 1) / 2}) {
+    for (const auto& [du, dv] : {std::pair{1, 0}, {0, 1}, {1, 1}, {1, -1}}) {
+      const double one = inverse_at(u + step * du, v + step * dv);
+      const double other = inverse_at(u - step * du, v - step * dv);
+      if (one > 0 && other > 0 && one + other - 2.0 * here > gate) return true;
+    }
+  }
+  return false;
 }
 
 double time_of(const mrpt::obs::CObservation& observation) {

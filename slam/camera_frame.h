@@ -20,6 +20,11 @@ struct CameraFrame {
   /// Depth in metres at a raw pixel; 0 where there is none, outside the configured range, or on
   /// the edge of an object, where a depth camera mixes near and far.
   double depth_at(const Eigen::Vector2d& raw_pixel, const DepthConfig& config) const;
+
+  /// Whether a nearer surface ends within `radius_px` of a raw pixel. What looks like a corner
+  /// there may be its outline across something behind it, which slides as the camera moves.
+  bool is_beside_nearer(const Eigen::Vector2d& raw_pixel, double radius_px,
+                        const DepthConfig& config) const;
 };
 
 /// Seconds of an observation's clock.

@@ -12,6 +12,8 @@ namespace {
 
 constexpr int kBorderPx = 19;  // the descriptor's patch, rotated, must stay inside the level
 constexpr int kCellPx = 36;    // part of a level that competes for the best corner
+// What makes a corner lies on FAST's circle or within it; depth edges are torn by a pixel more.
+constexpr double kCornerReachPx = 4.0;
 
 struct Corner {
   cv::Point2f place;  ///< on its level
@@ -229,6 +231,8 @@ FeatureSet extract_features(const CameraFrame& frame, const CameraModel& camera,
   for (std::size_t i = 0; i < keypoints.size(); ++i) {
     const cv::KeyPoint& k = keypoints[i];
     const Eigen::Vector2d raw = on_full_image(k, frame.gray.size(), config);
+    const double reach_px = kCornerReachPx * octave_scale(k.octave, config);
+    if (frame.is_beside_nearer(raw, reach_px, depth)) continue;
     Feature f;
     f.pixel = at_middle_row(camera.undistort(raw), raw.y(), camera, shutter).cast<float>();
     f.angle_rad = static_cast<float>(k.angle * CV_PI / 180.0);

@@ -58,7 +58,7 @@ double octave_scale(int octave, const FeatureConfig& config);
 
 /// Finds corners on every level of the image pyramid and keeps the best of each part of the image.
 /// Their pixels are those of an image taken all at once; their depths those of `floor`, where it is
-/// known.
+/// known. Corners where something nearer ends before what lies behind are left out: they slide.
 FeatureSet extract_features(const CameraFrame& frame, const CameraModel& camera,
                             const FeatureConfig& config, const DepthConfig& depth,
                             const RollingShutter& shutter = {},
