@@ -10,12 +10,12 @@ namespace rovigo::slam {
 
 namespace {
 
-constexpr double kBlockS = 60.0;
+constexpr double kBlockS = 10.0;
 constexpr double kKernel = 3.0;  // sigmas: slip that nobody noticed loses its vote
-constexpr double kFloorM = 0.001, kFloorRad = 0.0005;  // no link is better than this
+constexpr double kFloorM = 0.001, kFloorRad = 0.0001;  // no link is better than this
 constexpr double kFloorHeightM = 0.005, kFloorTiltRad = 0.005;
 // How far calibrations may move from block to block.
-constexpr double kBiasStepRadS = 1e-3, kScaleStep = 2e-3, kDelayStepS = 2e-4;
+constexpr double kBiasStepRadS = 4e-4, kScaleStep = 8e-4, kDelayStepS = 8e-5;
 
 struct LinkError {
   LinkError(const MotionLink& l, const Se3& from_pose, const Se3& to_pose)

@@ -7,7 +7,8 @@ namespace rovigo::slam {
 
 namespace {
 
-constexpr double kReadingS = 0.02;      // white noise of the readings is stated at about 50 Hz
+// White noise is stated for readings at about these intervals.
+constexpr double kWheelReadingS = 0.02, kGyroReadingS = 0.008;
 constexpr double kLateralShare = 0.02;  // sideways creep, as a share of the motion
 constexpr double kSlipLastsS = 0.3;
 constexpr double kSilenceS = 0.1;  // no reading for longer: the motion is not known
@@ -32,14 +33,14 @@ StepNoise noise_of(const MotionStep& step, const DeadReckoningConfig& config) {
   const double dt = step.end_s - step.begin_s;
   const double speed = step.distance_m / std::max(1e-6, dt);
   const double turn_rate = step.turn_rad / std::max(1e-6, dt);
-  out.along_m2 = std::pow(config.wheel_speed_sigma_m_s, 2) * dt * kReadingS;
+  out.along_m2 = std::pow(config.wheel_speed_sigma_m_s, 2) * dt * kWheelReadingS;
   const double slip = step.slipping ? 0.2 * speed : 0.0;
   out.along_m2 += (slip * slip + std::pow(step.unseen_speed_m_s, 2)) * dt * kSlipLastsS;
   out.across_m2 = std::pow(kLateralShare, 2) * 0.1 *
                   (std::abs(step.distance_m) + 0.05 * std::abs(step.turn_rad));
   const double sigma = step.has_gyro ? config.gyro_sigma_rad_s
                                      : config.wheel_turn_sigma_rad_s + 0.05 * std::abs(turn_rate);
-  out.heading_rad2 = sigma * sigma * dt * kReadingS;
+  out.heading_rad2 = sigma * sigma * dt * (step.has_gyro ? kGyroReadingS : kWheelReadingS);
   return out;
 }
 
