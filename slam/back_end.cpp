@@ -24,9 +24,20 @@ void BackEnd::cull(const Culling& culling) {
   loops_.remove(culling.keyframe);
 }
 
-void BackEnd::adjust_everything(const std::vector<MotionLink>& links) {
+void BackEnd::spread(const std::vector<MotionLink>& links) {
+  constexpr int kIterations = 15;
+  PoseGraph graph{{}, edges_, links};
+  for (const Keyframe& k : map_.keyframes()) graph.poses.push_back(k.map_from_base);
+  const PoseGraphResult result = optimize_pose_graph(graph, config_.dead_reckoning, kIterations);
+  if (result.converged) map_.move_keyframes(result.poses);
+}
+
+void BackEnd::adjust_everything(std::vector<MotionLink> links,
+                                const std::vector<MotionLink>& revisits) {
   constexpr int kPasses = 2;  // the second without the sightings the first found wanting
   constexpr int kIterations = 8;
+  links.insert(links.end(), revisits.begin(), revisits.end());
+  if (!revisits.empty()) spread(links);
   for (int pass = 0; pass < kPasses; ++pass) {
     give_back_free_memory();  // the adjustment is the greatest moment of all
     adjust_bundle(map_, {}, links, {.iterations = kIterations, .on_floor = on_floor_});

@@ -28,14 +28,18 @@ class BackEnd {
   /// Nothing will be recognised from now on: the index of places is let go of.
   void forget_places() { loops_.forget_places(); }
 
-  /// The last word on all poses: everything seen, all at once.
-  void adjust_everything(const std::vector<MotionLink>& links);
+  /// The last word on all poses: everything seen, all at once. `revisits` are links that the poses
+  /// do not know of yet.
+  void adjust_everything(std::vector<MotionLink> links, const std::vector<MotionLink>& revisits);
 
   const std::vector<PoseGraphEdge>& edges() const { return edges_; }
   const Relocalizer& relocalizer() const { return loops_.relocalizer(); }
   int loop_closures() const { return loop_closures_; }
 
  private:
+  /// Over the graph alone: the adjustment of everything goes no long ways.
+  void spread(const std::vector<MotionLink>& links);
+
   SlamConfig config_;
   LandmarkMap& map_;
   bool on_floor_;

@@ -13,8 +13,8 @@
 namespace rovigo::slam {
 
 /// Adds motion links to a problem (which must not own its loss functions) over keyframe steps. The
-/// calibration drifts: one block for every ten seconds of the recording, tied to the next by how far
-/// that time may move it.
+/// calibration drifts: one block for every ten seconds of the recording, tied to the next by how
+/// far that time may move it.
 class LinkErrors {
  public:
   using StepOf = std::function<double*(int keyframe)>;

@@ -22,6 +22,7 @@
 #include "slam/trajectory_history.h"
 #include "slam/view_continuity.h"
 #include "slam/view_verdict.h"
+#include "slam/wall_revisits.h"
 #include "slam/wall_ties.h"
 
 namespace rovigo::slam {
@@ -275,7 +276,8 @@ std::optional<PoseEstimate> Slam::process(const mrpt::obs::CObservation& observa
 maps::SavedMap Slam::finish() {
   Impl& s = *impl_;
   s.back_end.forget_places();
-  s.back_end.adjust_everything(s.links());
+  s.back_end.adjust_everything(
+      s.links(), s.motion.planar() ? wall_revisits(s.map) : std::vector<MotionLink>{});
   maps::SavedMap out;
   out.metadata.software_version = ROVIGO_VERSION;
   out.metadata.camera = s.rig.camera;

@@ -19,6 +19,7 @@ constexpr float kNeighbourM = 0.4f;
 constexpr double kCorrespondM = 0.25;
 constexpr double kCauchyScale = 2.0, kInlierSigmas = 3.0;
 constexpr int kIterations = 10;
+constexpr double kSameFace = 0.9;   // cosine
 constexpr double kWeakShare = 0.1;  // of the best known direction's information
 // Neighbouring points share their errors: count them as fewer.
 constexpr double kIndependentShare = 0.25;
@@ -77,7 +78,7 @@ void find_normal(WallScan& scan, std::size_t i, const Eigen::Vector2f& eye) {
   const float grazing = std::abs(normal.dot((scan[i].point - eye).normalized()));
   const float sigma = std::hypot(scan[i].sigma_m * grazing, static_cast<float>(kSystematicM));
   if (across > 2.0f * sigma + 0.01f || along < 2.0f * across) return;
-  scan[i].normal = normal;
+  scan[i].normal = normal.dot(scan[i].point - eye) < 0 ? normal : Eigen::Vector2f(-normal);
   scan[i].sigma_across_m = sigma;
 }
 
@@ -136,7 +137,7 @@ PlanarCost linearize(const std::vector<MapPoint>& reference, const WallScan& sca
     const MapPoint* wall = nearest(reference, arm + Eigen::Vector2d(pose.x, pose.y));
     if (wall == nullptr) continue;
     const Eigen::Vector2d own_normal = turn * p.normal.cast<double>();
-    if (std::abs(own_normal.dot(wall->normal)) < 0.9) continue;  // round a corner
+    if (own_normal.dot(wall->normal) < kSameFace) continue;  // round a corner, or a wall's back
     ++out.points;
     const double error = wall->normal.dot(arm + Eigen::Vector2d(pose.x, pose.y) - wall->point);
     const double variance = wall->variance + std::pow(p.sigma_across_m, 2);
@@ -154,6 +155,16 @@ PlanarCost linearize(const std::vector<MapPoint>& reference, const WallScan& sca
 }
 
 }  // namespace
+
+int common_points(const PlacedWalls& one, const PlacedWalls& other) {
+  const std::vector<MapPoint> reference = in_map({one});
+  int count = 0;
+  for (const MapPoint& p : in_map({other})) {
+    const MapPoint* wall = nearest(reference, p.point);
+    count += wall != nullptr && p.normal.dot(wall->normal) >= kSameFace;
+  }
+  return count;
+}
 
 WallScan wall_scan(const CameraFrame& frame, const CameraModel& camera, const Se3& base_from_camera,
                    const SlamConfig& config) {

@@ -14,10 +14,11 @@ namespace rovigo::slam {
 
 /// Where an image column meets an upright surface.
 struct WallPoint {
-  Eigen::Vector2f point = Eigen::Vector2f::Zero();   ///< over the floor, in base_link
-  Eigen::Vector2f normal = Eigen::Vector2f::Zero();  ///< unit; zero where no line fits
-  float sigma_m = 0.0f;                              ///< along the ray
-  float sigma_across_m = 0.0f;                       ///< across the surface
+  Eigen::Vector2f point = Eigen::Vector2f::Zero();  ///< over the floor, in base_link
+  /// Unit, towards who saw it; zero where no line fits.
+  Eigen::Vector2f normal = Eigen::Vector2f::Zero();
+  float sigma_m = 0.0f;         ///< along the ray
+  float sigma_across_m = 0.0f;  ///< across the surface
 };
 using WallScan = std::vector<WallPoint>;
 
@@ -36,6 +37,9 @@ struct PlacedWalls {
   const WallScan* scan = nullptr;
   TPose2D map_from_base;
 };
+
+/// Points of `other` beside a point of `one` on the same face of a wall.
+int common_points(const PlacedWalls& one, const PlacedWalls& other);
 
 /// Gauss-Newton from the prior pose; the prior holds the directions the walls say nothing about.
 WallMatch match_walls(const std::vector<PlacedWalls>& reference, const WallScan& scan,

@@ -26,21 +26,6 @@ bool is_plausible(const WallMatch& match, const TPose2D& prior) {
          step_of(match, prior) <= kWallStep;
 }
 
-/// What walls alone say: the match was held by the prior where they are silent.
-MotionLink link_of(const WallMatch& match, const TPose2D& from) {
-  Eigen::Matrix3d information = match.look.information;
-  information.diagonal() += Eigen::Vector3d(1.0, 1.0, 1.0);  // 1 m, 1 rad: nothing
-  const Eigen::Vector3d step = -information.ldlt().solve(match.look.gradient);
-  const TPose2D& at = match.look.map_from_base;
-  const TPose2D to{at.x + step.x(), at.y + step.y(), at.phi + step.z()};
-  Eigen::Matrix3d from_map = Eigen::Matrix3d::Identity();
-  from_map.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-from.phi).toRotationMatrix();
-  MotionLink link;
-  link.from_from_to = maps::compose(maps::inverse(from), to);
-  link.covariance = from_map * information.inverse() * from_map.transpose();
-  return link;
-}
-
 /// The keyframe at hand and those before it that may show the same walls.
 std::vector<int> last_keyframes(const LandmarkMap& map, int anchor) {
   std::vector<int> out;
@@ -59,6 +44,25 @@ std::vector<PlacedWalls> placed_walls(const LandmarkMap& map, const std::vector<
 }
 
 }  // namespace
+
+MotionLink wall_link(const WallMatch& match, const Keyframe& from, const Keyframe& to) {
+  Eigen::Matrix3d information = match.look.information;
+  information.diagonal() += Eigen::Vector3d(1.0, 1.0, 1.0);  // 1 m, 1 rad: nothing
+  const Eigen::Vector3d step = -information.ldlt().solve(match.look.gradient);
+  const TPose2D& at = match.look.map_from_base;
+  const TPose2D map_from_from = to_planar(from.map_from_base);
+  Eigen::Matrix3d from_map = Eigen::Matrix3d::Identity();
+  from_map.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-map_from_from.phi).toRotationMatrix();
+  MotionLink link;
+  link.from = from.id;
+  link.to = to.id;
+  link.begin_s = from.time_s;
+  link.end_s = to.time_s;
+  link.from_from_to = maps::compose(maps::inverse(map_from_from),
+                                    {at.x + step.x(), at.y + step.y(), at.phi + step.z()});
+  link.covariance = from_map * information.inverse() * from_map.transpose();
+  return link;
+}
 
 std::optional<PlanarInformation> WallTies::look(const CameraFrame& frame, const LandmarkMap& map,
                                                 int anchor, const Se3& pose,
@@ -83,12 +87,7 @@ void WallTies::tie(const LandmarkMap& map, int keyframe, int anchor, const Motio
     const WallMatch match = match_walls(placed_walls(map, {k}), now.walls, prior,
                                         motion.dead_reckoning().pose_covariance());
     if (!is_plausible(match, prior)) continue;
-    MotionLink link = link_of(match, to_planar(map.keyframe(k).map_from_base));
-    link.from = k;
-    link.to = keyframe;
-    link.begin_s = map.keyframe(k).time_s;
-    link.end_s = now.time_s;
-    links_.push_back(link);
+    links_.push_back(wall_link(match, map.keyframe(k), now));
   }
 }
 

@@ -11,6 +11,10 @@
 
 namespace rovigo::slam {
 
+/// What walls alone say of two keyframes: the match of one's walls against the other's was held by
+/// a prior where they are silent.
+MotionLink wall_link(const WallMatch& match, const Keyframe& from, const Keyframe& to);
+
 class WallTies {
  public:
   /// For a camera whose place on the rover is known.
