@@ -95,20 +95,6 @@ TEST(ControlOnSimulator, WheelsThatStickBelowATenthOfAMetrePerSecondDoNotStopIt)
   }
 }
 
-TEST(ControlOnSimulator, WheelsThatStickDoNotStopItOnTruePosesEither) {
-  SimulatedDrive
-      setup;  // poses that tell the least motion at once: what is left is corrected at all
-  setup.scenario.motor.dead_zone_m_s = 0.1;
-  const Limits limits{.final_position_m = 0.03, .final_heading_rad = 0.05};
-  expect_all_tracked(setup, limits);
-  for (const double radius : {0.55, 0.9}) {
-    const auto round = TrajectoryBuilder(setup.robot, {})
-                           .drive(2 * maps::kPi * radius, [=](double) { return 1.0 / radius; })
-                           .get();
-    expect_tracked(round, setup, limits, "circle of " + std::to_string(radius));
-  }
-}
-
 TEST(ControlOnSimulator, OnWetPatchesItTurnsInPlaceWithoutSlidingFar) {
   SimulatedDrive setup;
   setup.scenario = sim::Scenario();
