@@ -31,6 +31,10 @@ class EstimatedPoses final : public PoseSource {
   explicit EstimatedPoses(const Arguments&... arguments) : localizer_(arguments...) {}
 
   void observe(const mrpt::obs::CObservation& observation) override {
+    // An estimator's past is done: what others have overtaken on its way comes too late for it.
+    const double told_s = mrpt::Clock::toDouble(observation.timestamp);
+    if (told_s < newest_s_) return;
+    newest_s_ = told_s;
     const slam::PoseEstimate estimate = localizer_.process(observation);
     last_ = {estimate.time_s, TPose2D(estimate.map_from_base.asTPose()), estimate.sigma_position_m,
              quality_of(estimate.health)};
@@ -39,6 +43,7 @@ class EstimatedPoses final : public PoseSource {
 
  private:
   AnyLocalizer localizer_;
+  double newest_s_ = 0.0;
   control::PoseInput last_;
 };
 

@@ -45,10 +45,12 @@ class Sha256 {
 void DriveLoop::advance(const TTwist2D& command) {
   for (int i = 0; i < kStepsPerCommand; ++i) {
     simulator_.step(command);
-    for (const auto& observation : simulator_.take_observations()) {
+    const auto told = simulator_.take_observations();
+    for (const auto& observation : sensor_faults_.pass(simulator_, simulator_.time_s(), told)) {
       poses_.observe(*observation);
-      if (hooks_.observation) hooks_.observation(*observation);
     }
+    if (!hooks_.observation) continue;
+    for (const auto& observation : told) hooks_.observation(*observation);
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include "app/pose_faults.h"
 #include "app/pose_source.h"
+#include "app/sensor_faults.h"
 #include "control/drive_controller.h"
 #include "control/drive_log.h"
 #include "sim/simulator.h"
@@ -66,6 +67,7 @@ class DriveLoop {
   sim::Simulator& simulator_;
   TPose2D map_from_world_;
   PoseSource& poses_;
+  SensorFaults sensor_faults_;
   PoseFaults pose_faults_;
   control::DriveGuard guard_;
   control::TrackerOutput last_;  ///< of the controller, while it was alive

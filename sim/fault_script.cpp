@@ -12,6 +12,9 @@ FaultKind kind_of(std::string_view name) {
   if (name == "poses_stall") return FaultKind::kPosesStall;
   if (name == "poses_late") return FaultKind::kPosesLate;
   if (name == "poses_not_finite") return FaultKind::kPosesNotFinite;
+  if (name == "sensors_stall") return FaultKind::kSensorsStall;
+  if (name == "sensors_late") return FaultKind::kSensorsLate;
+  if (name == "camera_late") return FaultKind::kCameraLate;
   if (name == "set_points_stop") return FaultKind::kSetPointsStop;
   if (name == "battery_low") return FaultKind::kBatteryLow;
   assert(name == "manual_takeover");

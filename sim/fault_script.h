@@ -13,6 +13,9 @@ enum class FaultKind {
   kPosesStall,
   kPosesLate,
   kPosesNotFinite,
+  kSensorsStall,
+  kSensorsLate,
+  kCameraLate,
   kSetPointsStop,
   kBatteryLow,
   kManualTakeover

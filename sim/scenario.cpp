@@ -261,11 +261,12 @@ void Kidnap::describe(maps::SettingsVisitor& v) {
 }
 
 void Fault::describe(maps::SettingsVisitor& v) {
-  v.text({.name = "kind",
-          .help = "What breaks.",
-          .choices = {"poses_stall", "poses_late", "poses_not_finite", "set_points_stop",
-                      "battery_low", "manual_takeover"}},
-         kind);
+  v.text(
+      {.name = "kind",
+       .help = "What breaks.",
+       .choices = {"poses_stall", "poses_late", "poses_not_finite", "sensors_stall", "sensors_late",
+                   "camera_late", "set_points_stop", "battery_low", "manual_takeover"}},
+      kind);
   v.real({.name = "start_s", .help = "When it begins.", .min = 0, .max = kForGood}, start_s);
   v.real({.name = "within_s",
           .help = "It begins up to this later, at a moment drawn by the seed.",
@@ -277,7 +278,8 @@ void Fault::describe(maps::SettingsVisitor& v) {
           .min = 0,
           .max = kForGood},
          duration_s);
-  v.real({.name = "delay_s", .help = "poses_late: by how much.", .min = 0, .max = 10}, delay_s);
+  v.real({.name = "delay_s", .help = "What comes late: by how much.", .min = 0, .max = 10},
+         delay_s);
   v.real({.name = "voltage_share",
           .help = "battery_low: voltage as a share of the nominal one.",
           .min = 0,

@@ -153,11 +153,13 @@ struct Kidnap {
 };
 
 /// Something breaks in the closed loop for a while. The simulator applies what concerns the rover,
-/// app what concerns poses and commands.
+/// app what concerns observations, poses and commands.
 struct Fault {
   /// "poses_stall": none arrives. "poses_late": they arrive `delay_s` later. "poses_not_finite":
-  /// they are no numbers. "set_points_stop": the controller is dead. "battery_low": the voltage
-  /// falls to `voltage_share` of the nominal one. "manual_takeover": an operator takes the rover.
+  /// they are no numbers. "sensors_stall", "sensors_late": the same of all that the sensors tell,
+  /// for poses that are made of it; "camera_late": of frames alone (a Blackout is their stall).
+  /// "set_points_stop": the controller is dead. "battery_low": the voltage falls to `voltage_share`
+  /// of the nominal one. "manual_takeover": an operator takes the rover.
   std::string kind = "poses_stall";
   double start_s = 0.0;
   double within_s = 0.0;  ///< it begins at a moment up to this later, drawn by the seed

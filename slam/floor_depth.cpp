@@ -9,6 +9,7 @@ namespace rovigo::slam {
 namespace {
 
 constexpr double kFlatM = 0.025;  // a return this near to the plane may be the floor's
+constexpr double kBelowM = 0.03, kBelowShare = 0.01;  // uneven, and seen under a wrong tilt
 constexpr double kFarthestM = 3.0;
 constexpr double kLeastFall = 0.05;  // of a ray, for the floor to be met before the walls
 // Of a frame: what is read more evenly than this is right on average. Matt floors are at 0.002,
@@ -39,7 +40,9 @@ FloorDepth::FloorDepth(const CameraFrame& frame, const CameraModel& camera,
 
 double FloorDepth::at(const Eigen::Vector2d& raw_pixel) const {
   const double measured = frame_.depth_at(raw_pixel, config_);
-  if (roughness_ < kUneven || !(measured > 0.0)) return measured;
+  if (!(measured > 0.0)) return measured;
+  if (is_below(raw_pixel, measured)) return 0.0;
+  if (roughness_ < kUneven) return measured;
   const double plane = plane_at(raw_pixel);
   if (plane == 0.0 || std::abs(height_m(measured, plane)) > kFlatM) return measured;
   if (!rises_as_floor(raw_pixel, plane)) return measured;
@@ -48,6 +51,14 @@ double FloorDepth::at(const Eigen::Vector2d& raw_pixel) const {
   const double weight =
       *roughness * *roughness / (*roughness * *roughness + kPlaneShare * kPlaneShare);
   return measured + weight * (plane - measured);
+}
+
+/// Under the floor there is only what it mirrors. The image shows both there, one over the other:
+/// a corner of the floor's own at the mirror image's depth would move too slowly for it.
+bool FloorDepth::is_below(const Eigen::Vector2d& raw_pixel, double measured_m) const {
+  const Eigen::Vector3d point =
+      level_from_camera_ * camera_.unproject(camera_.undistort(raw_pixel), measured_m);
+  return point.z() < -(kBelowM + kBelowShare * measured_m);
 }
 
 /// Depth at which the pixel's ray meets the plane; 0 when it does not, or far away.

@@ -1,6 +1,7 @@
 #pragma once
 // What is known of the floor, told to depths that were measured on it: a polished floor is read
-// centimetres off, and neighbouring readings err together, so that no average helps.
+// centimetres off, and neighbouring readings err together, so that no average helps; or the depth
+// is that of what the floor mirrors.
 
 #include <optional>
 #include <vector>
@@ -17,9 +18,9 @@ class FloorDepth {
   FloorDepth(const CameraFrame& frame, const CameraModel& camera, const DepthConfig& config,
              const Se3& level_from_camera);
 
-  /// The depth at a raw pixel, in metres: as measured off the floor; on it drawn towards the plane,
-  /// by as much as the floor around it is read worse than the plane is known, in a frame that reads
-  /// its floor unevenly.
+  /// The depth at a raw pixel, in metres: as measured off the floor, none (0) below it; on it drawn
+  /// towards the plane, by as much as the floor around it is read worse than the plane is known, in
+  /// a frame that reads its floor unevenly.
   double at(const Eigen::Vector2d& raw_pixel) const;
 
   /// How unevenly this frame reads its floor, as a share of the depth (1 sigma); 0 where it reads
@@ -28,6 +29,7 @@ class FloorDepth {
 
  private:
   double plane_at(const Eigen::Vector2d& raw_pixel) const;
+  bool is_below(const Eigen::Vector2d& raw_pixel, double measured_m) const;
   double height_m(double measured_m, double plane_m) const;
   bool rises_as_floor(const Eigen::Vector2d& raw_pixel, double plane_m) const;
   std::optional<double> roughness_around(const Eigen::Vector2d& raw_pixel) const;

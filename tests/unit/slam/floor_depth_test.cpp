@@ -82,6 +82,32 @@ TEST(FloorDepth, LeavesWhatStandsOnTheFloorAsItWasMeasured) {
   }
 }
 
+TEST(FloorDepth, TakesNoDepthOfWhatTheFloorMirrors) {
+  // In the left half the mirror image is matched: the wall's, below the floor and as far away.
+  const CameraModel model = camera();
+  const CameraFrame frame =
+      view([](int u, int v) { return u < 320 ? kWallM / floor_depth(v) : 1.0; });
+  const FloorDepth floor(frame, model, kConfig, level_from_camera());
+  for (int v = 330; v < 440; v += 10) {
+    ASSERT_NEAR(frame.depth_at({100, v}, kConfig), kWallM, 1e-6);
+    EXPECT_EQ(floor.at({100, v}), 0.0) << v;
+    EXPECT_EQ(floor.at({540, v}), frame.depth_at({540, v}, kConfig)) << v;
+  }
+  for (int u = 60; u < 580; u += 20) EXPECT_EQ(floor.at({u, 100}), kWallM) << u;
+}
+
+TEST(FloorDepth, KeepsDepthsThatTiltAndUnevennessPutBelowTheFloor) {
+  // 5 mm under the plane and seen 0.3 deg too steeply.
+  const CameraModel model = camera();
+  const CameraFrame frame = view([](int, int) { return 1.0 + 0.005 / kHeightM; });
+  Se3 tilted = level_from_camera();
+  tilted.rotation = so3_exp({0.0, 0.005, 0.0}) * tilted.rotation;
+  const FloorDepth floor(frame, model, kConfig, tilted);
+  for (int v = 310; v < 440; v += 10) {
+    EXPECT_EQ(floor.at({320, v}), frame.depth_at({320, v}, kConfig)) << v;
+  }
+}
+
 TEST(FloorDepth, SaysHowUnevenlyTheFloorIsRead) {
   const CameraModel model = camera();
   const CameraFrame smooth = view(even), polished = view(wavy);
