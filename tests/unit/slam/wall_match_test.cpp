@@ -3,53 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
+
+#include "tests/support/wall_scene.h"
 
 namespace rovigo::slam {
 namespace {
 
-using Eigen::Vector2d;
-
-struct Wall {
-  Vector2d from, to;
-};
-
-/// What a camera at `map_from_base` meets of the walls, with noise along the ray.
-WallScan scan_of(const std::vector<Wall>& walls, const TPose2D& map_from_base, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise;
-  WallScan scan;
-  for (int i = -60; i <= 60; ++i) {
-    const double bearing = 0.0085 * i;
-    const Vector2d ray(std::cos(map_from_base.phi + bearing),
-                       std::sin(map_from_base.phi + bearing));
-    double nearest = 6.0;
-    Vector2d normal = Vector2d::Zero();
-    for (const Wall& w : walls) {
-      const Vector2d along = w.to - w.from;
-      const Vector2d across(-along.y(), along.x());
-      const double speed = ray.dot(across);
-      if (std::abs(speed) < 1e-9) continue;
-      const Vector2d eye(map_from_base.x, map_from_base.y);
-      const double range = (w.from - eye).dot(across) / speed;
-      const double share = (eye + range * ray - w.from).dot(along) / along.squaredNorm();
-      if (range < 0.3 || range >= nearest || share < 0 || share > 1) continue;
-      nearest = range;
-      normal = Eigen::Rotation2Dd(-map_from_base.phi) * across.normalized();
-    }
-    if (normal.isZero()) continue;
-    const double sigma = 0.0007 * nearest * nearest;  // averaged over the rows of a column
-    const double measured = nearest + sigma * noise(random);
-    const double grazing = std::abs(normal.dot(Vector2d(std::cos(bearing), std::sin(bearing))));
-    WallPoint p;
-    p.point = (measured * Vector2d(std::cos(bearing), std::sin(bearing))).cast<float>();
-    p.normal = normal.cast<float>();
-    p.sigma_m = static_cast<float>(sigma);
-    p.sigma_across_m = static_cast<float>(std::hypot(sigma * grazing, 0.004));
-    scan.push_back(p);
-  }
-  return scan;
-}
+using test::scan_of;
+using test::Wall;
 
 const std::vector<Wall> kCorridor = {{{-5, 1}, {30, 1}}, {{-5, -1}, {30, -1}}};
 const std::vector<Wall> kDeadEnd = {{{-5, 1}, {4, 1}}, {{-5, -1}, {4, -1}}, {{4, -1}, {4, 1}}};
@@ -88,6 +49,14 @@ TEST(WallMatch, WallsElsewhereMatchNothing) {
   const WallMatch match =
       match_walls({{&before, {0, 0, 0}}}, scan_of(hall, {0, 0, 0}, 6), {0, 0, 0}, wide());
   EXPECT_EQ(match.points, 0);
+}
+
+TEST(WallMatch, TheBackOfAWallIsAnotherSurface) {
+  const std::vector<Wall> face = {{{3, -3}, {3, 3}}}, back = {{{3.1, -3}, {3.1, 3}}};
+  const WallScan before = scan_of(face, {0, 0, 0}, 7), now = scan_of(back, {6, 0, M_PI}, 8);
+  EXPECT_EQ(match_walls({{&before, {0, 0, 0}}}, now, {6, 0, M_PI}, wide()).points, 0);
+  EXPECT_EQ(common_points({&before, {0, 0, 0}}, {&now, {6, 0, M_PI}}), 0);
+  EXPECT_GT(common_points({&before, {0, 0, 0}}, {&before, {0.1, 0, 0}}), 50);
 }
 
 TEST(WallMatch, AnEmptyScanIsNoWitness) {
