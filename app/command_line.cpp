@@ -151,16 +151,25 @@ void add_track_command(CLI::App& app, Action& chosen, bool& json) {
   CLI::App* track =
       app.add_subcommand("track", "Repeatable trajectory-tracking tests in the simulator");
   auto t = bind(*track, run_track, chosen, json);
+  track->footer(
+      "A suite file names trajectories, disturbances, speeds, seeds, controllers and limits; "
+      "sim/suites/default.yaml shows every key. Exit code 1: a run missed its limits.\n"
+      "  rovigo track --report tests\n"
+      "  rovigo track mine.yaml --against tests/track.json --report after\n"
+      "  rovigo track missions --shard 3/8 --report part3       on each of eight machines, then\n"
+      "  rovigo track --merge part*/track.json --report all");
   track->add_option("suite", t->suite, "A name in sim/suites or a YAML file; default: default");
   track->add_option("--pose", t->pose, "Pose source of every run, whatever the suite says")
       ->check(CLI::IsMember({"perturbed", "truth", "slam", "odometry"}));
   track->add_option("--shard", t->shard, "Drive only share I of N of the runs")->type_name("I/N");
-  track->add_option("--merge", t->merge, "Put together what shards with --json printed")
+  track
+      ->add_option("--merge", t->merge,
+                   "Put together what shards with --json printed; for a report, their track.json")
       ->type_name("FILES...");
   track->add_option("--report", t->report,
                     "Write a report folder to open in a browser; shards' reports can be merged");
   track->add_option("--against", t->against,
-                    "With --report: compare with this earlier track.json, run by run");
+                    "Compare with this earlier track.json or --json; with --report run by run");
   track->add_option("--threads", t->threads, "Default: as many as the machine has")
       ->check(CLI::Range(1, 1024));
 }
@@ -290,7 +299,9 @@ int run_command_line(int argc, const char* const* argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
-    return report_error(std::string(e.what()) + "; see `rovigo --help`", "bad_usage",
+    std::string help = "`rovigo";
+    for (const CLI::App* command : app.get_subcommands()) help += " " + command->get_name();
+    return report_error(std::string(e.what()) + "; see " + help + " --help`", "bad_usage",
                         asks_for_json(argc, argv));
   }
   try {

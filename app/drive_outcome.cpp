@@ -31,11 +31,11 @@ Outcome held_outcome(control::StopCause cause) {
   return {"stopped", 106, "stopped by the drive side"};
 }
 
+std::string times_of(int count) { return count == 1 ? "once" : std::to_string(count) + " times"; }
+
 std::string found_again(int times) {
   if (times == 0) return "";
-  return "; its pose was lost " +
-         std::string(times == 1 ? "once" : std::to_string(times) + " times") +
-         " on the way and found by looking around";
+  return "; its pose was lost " + times_of(times) + " on the way and found by looking around";
 }
 
 }  // namespace
@@ -43,8 +43,8 @@ std::string found_again(int times) {
 Outcome outcome_of(const control::DriveLog& log, const control::DriveMetrics& m) {
   if (log.contact_events > 0) {
     return {"collision", 106,
-            "touched an obstacle " + std::to_string(log.contact_events) +
-                " times on the way, first \"" + log.touched + "\""};
+            "touched an obstacle " + times_of(log.contact_events) + " on the way, first \"" +
+                log.touched + "\""};
   }
   switch (log.status) {
     case control::TrackStatus::kReached:

@@ -60,6 +60,8 @@ void PathFollower::resume(const TPose2D& pose, double speed_m_s) {
   rest_time_s_ = 0.0;
   if (leg_index_ >= legs_.legs().size()) return;
   const Leg& leg = legs_.legs()[leg_index_];
+  turn_begin_.reset();
+  drifted_m_ = 0.0;
   if (leg.kind == LegKind::kTurn) return;  // the turn's pace waits for the heading by itself
   const PathPlace place = legs_.project(maps::position_of(pose), leg, arc_m_, kResumeWindow);
   arc_m_ =
@@ -85,6 +87,8 @@ void PathFollower::next_leg() {
   pace_ = 1.0;  // a leg starts at rest, so full pace is no jump
   rest_time_s_ = 0.0;
   turning_first_ = false;
+  turn_begin_.reset();
+  drifted_m_ = 0.0;
   nudge_.reset();
   heading_pi_.reset();
   speed_pi_.reset();

@@ -6,6 +6,8 @@
 // cuts no corner: the cross-track error asks for a heading (approach angle, after Samson 1992), a
 // PI loop with the path's own turn rate as feed-forward follows it.
 
+#include <optional>
+
 #include "control/command_limiter.h"
 #include "control/control_config.h"
 #include "control/pi_controller.h"
@@ -63,6 +65,7 @@ class PathFollower {
   bool has_arrived(const Leg& leg, double remaining) const;
   bool must_turn_first(double error);
   double approach_gain(double speed) const;
+  double turning_share(const FollowInput& in);
   double hold_place(const Leg& leg, double turn_rate, const FollowInput& in) const;
   double crab(double path_heading, double remaining, const FollowInput& in) const;
   Approach approach(const PathPlace& place, double heading_error, double remaining,
@@ -86,6 +89,9 @@ class PathFollower {
   double arc_m_ = 0.0;
   double rest_time_s_ = 0.0;  ///< spent at the end of the leg
   bool turning_first_ = false;
+  std::optional<TPoint2D> turn_begin_;  ///< where the turn under way began
+  double drifted_m_ = 0.0;              ///< since then, as the slope explains it
+  double gentleness_ = 1.0;             ///< share of the planned rate at which it turns in place
 };
 
 }  // namespace rovigo::control

@@ -15,7 +15,11 @@ constexpr double kStandingTurnRateRadS = 0.05;
 constexpr double kTurnShare = 0.9;     ///< of the turn limits used, so that feedback has room
 constexpr double kEasyTurnRad = 0.15;  ///< a turn's reference waits from this heading error on ...
 constexpr double kLostTurnRad = 0.4;   ///< ... and stands from this
-constexpr double kNudgeRad = 0.2;      ///< up to here a standing rover is nudged, not steered
+constexpr double kNearEnoughToDriveRad = 0.03;             ///< the leg that follows steers anyway
+constexpr double kEasySlideM = 0.015, kFarSlideM = 0.035;  ///< poses' noise is no slide
+constexpr double kNoDriftMS = 0.01, kSlopeDriftMS = 0.02;
+constexpr double kGentleShare = 0.4;  ///< of the planned turn rate
+constexpr double kNudgeRad = 0.2;     ///< up to here a standing rover is nudged, not steered
 constexpr double kLeastHoldRateRadS = 0.3, kHoldSlack = 0.15;  ///< rad; keeps noise from mattering
 
 }  // namespace
@@ -77,8 +81,10 @@ FollowOutput PathFollower::turn(const Leg& leg, const FollowInput& in) {
   FollowOutput out;
   const double error = wrap_angle(now.pose.phi - in.pose.phi);
   out.heading_error_rad = error;
-  const bool close = std::abs(error) <= config_.fine_heading_tolerance_rad &&
-                     std::abs(in.twist.omega) < kStandingTurnRateRadS;
+  const double near_enough =
+      &leg == &legs_.legs().back() ? config_.fine_heading_tolerance_rad : kNearEnoughToDriveRad;
+  const bool close =
+      std::abs(error) <= near_enough && std::abs(in.twist.omega) < kStandingTurnRateRadS;
   const bool long_enough = !nudge_.is_pushing() && rest_time_s_ > config_.settle_time_s &&
                            std::abs(error) <= config_.goal_heading_tolerance_rad;
   if (reference_time_s_ >= end && (close || long_enough)) {
@@ -86,8 +92,9 @@ FollowOutput PathFollower::turn(const Leg& leg, const FollowInput& in) {
     return out;
   }
   const double behind = error * planned >= 0.0 ? std::abs(error) : 0.0;
-  const double pace = falling(std::abs(error) > kLostTurnRad ? std::abs(error) : behind,
-                              kEasyTurnRad, kLostTurnRad);
+  const double pace =
+      turning_share(in) * falling(std::abs(error) > kLostTurnRad ? std::abs(error) : behind,
+                                  kEasyTurnRad, kLostTurnRad);
   advance_reference(
       leg, pace,
       limits_.max_yaw_acceleration_rad_s2 / std::max(std::abs(planned), kStandingTurnRateRadS),
@@ -101,6 +108,21 @@ FollowOutput PathFollower::turn(const Leg& leg, const FollowInput& in) {
   out.wanted.omega = turn_in_place(error, pace_ * planned, in);
   out.wanted.vx = hold_place(leg, pace_ * planned, in);
   return out;
+}
+
+/// Of the planned turn rate. A turn that slides off its place goes on gently, and so do those after
+/// it: the faster the tyres scrub, the sooner those on slippery ground let go while the others
+/// hold. Not so where a slope takes the rover aside all the time: there a longer turn slides
+/// farther.
+double PathFollower::turning_share(const FollowInput& in) {
+  const double drift = std::hypot(in.side_drift_m_s.x, in.side_drift_m_s.y);
+  const TPoint2D here = maps::position_of(in.pose);
+  if (!turn_begin_) turn_begin_ = here;
+  drifted_m_ += drift * std::max(in.dt_s, 0.0);
+  const double slid = maps::distance(*turn_begin_, here) - drifted_m_;
+  const double share = falling(slid, kEasySlideM, kFarSlideM);
+  gentleness_ = std::min(gentleness_, kGentleShare + (1.0 - kGentleShare) * share);
+  return 1.0 - (1.0 - gentleness_) * falling(drift, kNoDriftMS, kSlopeDriftMS);
 }
 
 /// A turn slides off its place: wheels slip, floors slope. Of all speeds forwards and backwards

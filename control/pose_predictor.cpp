@@ -25,7 +25,7 @@ TPose2D PosePredictor::moved(const TPose2D& pose, const TTwist2D& twist, double 
 
 /// The command without the wheels that stiction holds.
 TTwist2D PosePredictor::what_the_wheels_follow() const {
-  constexpr double kStandingShare = 0.25, kKineticShare = 0.4;  // of the dead zone
+  constexpr double kStandingShare = 0.1, kKineticShare = 0.4;  // of the dead zone
   const double dead_zone = drive_.dead_zone_m_s, half = drive_.track_width_m / 2;
   if (!(dead_zone > 0.0)) return command_;
   const auto followed = [&](double wanted, double present) {

@@ -43,6 +43,8 @@ class PosePredictor {
   void set_side_drift(const TPoint2D& m_s) { side_drift_ = m_s; }
   /// For how long the wheels rolled between two times, seconds.
   double rolled_s(double from_s, double to_s) const;
+  /// The wheels were found standing, whatever was modelled.
+  void stop() { modelled_ = {}; }
   void set_dead_zone(double rim_m_s) { drive_.dead_zone_m_s = rim_m_s; }
   double anchor_time_s() const { return anchor_time_s_; }
 

@@ -63,6 +63,7 @@ struct TrajectoryTracker::Impl {
   void take_pose(double now_s, const PoseInput& pose);
   bool jumps(const PoseInput& pose) const;
   void correct_estimate(const PoseInput& pose);
+  void start_anew();
   TTwist2D follow(double now_s, double dt_s);
   TTwist2D settle(double now_s, const TPose2D& estimate);
   void watch_time(double now_s);
@@ -208,9 +209,17 @@ void TrajectoryTracker::Impl::correct_estimate(const PoseInput& pose) {
     predictor.set_turn_gain(turn_gain.gain());
   }
   if (pose.quality == PoseQuality::kGood) {
-    if (stiction.pose(pose.map_from_base, sigma)) monitor.restart();  // a new try is due
+    const bool stalled = stiction.pose(pose.map_from_base, sigma);
     predictor.set_dead_zone(stiction.dead_zone_m_s());
+    if (stalled) start_anew();
   }
+}
+
+/// Wheels that were taken to turn stand: who pushes a standing rover knows how.
+void TrajectoryTracker::Impl::start_anew() {
+  predictor.stop();
+  turn_gain.interrupt();
+  monitor.restart();
 }
 
 TTwist2D TrajectoryTracker::Impl::follow(double now_s, double dt_s) {

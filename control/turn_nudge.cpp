@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kShare = 0.7;         // of the error: what stiction takes is known roughly only
 constexpr double kSurelyMoving = 1.1;  // of the dead zone
+constexpr double kStarting = 1.05;     // of it: the peak of the smallest push
 /// Rising to the dead zone and falling from what keeps a wheel moving, the rim stands: in units of
 /// the dead zone's rate squared by the acceleration.
 constexpr double kLostInRamps = 0.5 + 0.5 * 0.4 * 0.4;
@@ -32,7 +33,8 @@ double TurnNudge::step(double error_rad, double dt_s, double dead_zone_m_s, doub
                       kLostInRamps * dead_rate * dead_rate / acceleration;
   // Under the acceleration limit the rate is a trapezoid, or for little a triangle.
   const bool triangle = area < rate * rate / acceleration;
-  push_s_ = triangle ? std::sqrt(area / acceleration) : area / rate;
+  const double start_s = kStarting * dead_rate / acceleration;  // a shorter push moves nothing
+  push_s_ = triangle ? std::max(std::sqrt(area / acceleration), start_s) : area / rate;
   rate_rad_s_ = std::copysign(triangle ? limits.max_yaw_rate_rad_s : rate, error_rad);
   return rate_rad_s_;
 }

@@ -13,6 +13,7 @@
 #include "sim/kidnapping.h"
 #include "sim/people.h"
 #include "sim/rover.h"
+#include "sim/sensor_timer.h"
 #include "sim/world_model.h"
 
 namespace rovigo::sim {
@@ -79,33 +80,6 @@ const SimulatorOptions& checked(const SimulatorOptions& options) {
   return options;
 }
 
-/// Tells at which physics steps a sensor of a given rate is due: the first step at or after each
-/// multiple of its period, so that stamps are exact.
-class Timer {
- public:
-  explicit Timer(double rate_hz) : steps_per_sample_(1.0 / (rate_hz * Simulator::kStepS)) {}
-  bool is_due(long step) {
-    if (static_cast<double>(step) + 1e-9 < static_cast<double>(count_) * steps_per_sample_) {
-      return false;
-    }
-    ++count_;
-    interval_s_ = static_cast<double>(step - last_step_) * Simulator::kStepS;
-    last_step_ = step;
-    return true;
-  }
-  /// Between the last two samples; the nominal one at the first.
-  double interval_s() const {
-    return interval_s_ > 0.0 ? interval_s_ : steps_per_sample_ * Simulator::kStepS;
-  }
-  std::uint64_t index() const { return count_ - 1; }
-
- private:
-  double steps_per_sample_;
-  std::uint64_t count_ = 0;
-  long last_step_ = 0;
-  double interval_s_ = 0.0;
-};
-
 }  // namespace
 
 struct Simulator::Impl {
@@ -128,9 +102,9 @@ struct Simulator::Impl {
         drive(o.scenario.motor, o.scenario.wheels, o.robot, derive_seed(o.seed, kSlipStream)),
         imu(o.scenario.imu, gravity_on(o.scenario.slope), derive_seed(o.seed, kImuStream)),
         wheels(o.scenario.wheels, o.robot, derive_seed(o.seed, kWheelStream)),
-        imu_timer(o.scenario.imu.rate_hz),
-        wheel_timer(o.scenario.wheels.rate_hz),
-        camera_timer(o.camera_rate_hz) {
+        imu_timer(o.scenario.imu.rate_hz, kStepS),
+        wheel_timer(o.scenario.wheels.rate_hz, kStepS),
+        camera_timer(o.camera_rate_hz, kStepS) {
     if (options.camera_enabled) {
       camera = std::make_unique<DepthCamera>(world.model(), options.scenario.camera,
                                              options.scenario.floor, rig.camera,
@@ -307,9 +281,9 @@ struct Simulator::Impl {
   WheelSensor wheels;
   std::unique_ptr<DepthCamera> camera;
   std::optional<People> people;
-  Timer imu_timer;
-  Timer wheel_timer;
-  Timer camera_timer;
+  SensorTimer imu_timer;
+  SensorTimer wheel_timer;
+  SensorTimer camera_timer;
   BodyState state;
   Truth truth;
   std::deque<Pending> pending;

@@ -7,6 +7,7 @@
 #include "app/simulated_drive.h"
 #include "app/track/track_result.h"
 #include "app/track/track_run.h"
+#include "app/track/version_comparison.h"
 #include "maps/atomic_file.h"
 #include "maps/error.h"
 
@@ -77,14 +78,21 @@ int run_track(const TrackOptions& options) {
   if (options.against) against = read_result(*options.against);
   if (options.report) make_track_folder(*options.report);
   TrackPageInput done = options.merge.empty() ? drive_suite(options) : merge_shards(options);
+  const TrackResult& result = done.result;
+  auto object = result_json(result);
+  std::vector<Row> rows = result_rows(result);
+  if (against) {
+    const auto versions = compare_versions(result, *against);
+    object["against"] = comparison_json(versions);
+    for (Row& row : comparison_rows(versions, options.against->string())) rows.push_back(row);
+  }
   if (options.report) {
     if (against) done.against_name = options.against->string();
     done.against = std::move(against);
     write_track_report(*options.report, done);
     console.say("report: " + (*options.report / "index.html").string());
   }
-  const TrackResult& result = done.result;
-  console.result(result_json(result), result_message(result), result_rows(result));
+  console.result(object, result_message(result), rows);
   return failed_runs(result) == 0 ? kDone : kDidNotSucceed;
 }
 

@@ -57,6 +57,11 @@ std::vector<DriveSeries> gather_drives(const std::vector<fs::path>& files,
   std::map<std::pair<std::string, std::uint64_t>, DriveSeries> found;
   for (const fs::path& file : files) {
     const fs::path folder = file.parent_path();
+    if (!fs::exists(folder / "drives.json")) {
+      throw maps::InputError("--merge: there is no drives.json beside " + file.string() +
+                             ", which --report draws from; run the shards with --report DIR and "
+                             "merge their DIR/track.json");
+    }
     for (DriveSeries& s : read_series(folder / "drives.json")) {
       for (const std::string& name : trajectory_files(s.name, s.seed)) {
         write(dir / "trajectories" / name,

@@ -95,6 +95,23 @@ TEST(ControlOnSimulator, WheelsThatStickBelowATenthOfAMetrePerSecondDoNotStopIt)
   }
 }
 
+TEST(ControlOnSimulator, OnWetPatchesItTurnsInPlaceWithoutSlidingFar) {
+  SimulatedDrive setup;
+  setup.scenario = sim::Scenario();
+  setup.scenario.grip.slippery_share = 0.25;
+  setup.poses = {.latency_s = 0.05, .position_noise_m = 0.01, .heading_noise_rad = 0.01};
+  const auto plan = TrajectoryBuilder(setup.robot, {}).line(1).turn(maps::kPi).line(1).get();
+  for (const std::uint64_t seed : {2, 11, 13, 15, 19}) {
+    setup.seed = seed;
+    expect_tracked(plan, setup,
+                   {.cross_track_rms_m = 0.02,
+                    .cross_track_max_m = 0.06,
+                    .final_position_m = 0.03,
+                    .final_heading_rad = 0.05},
+                   "seed " + std::to_string(seed));
+  }
+}
+
 TEST(ControlOnSimulator, RandomMissionsOnPoorPosesAllArrive) {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) expect_mission_done(seed);
 }

@@ -134,6 +134,33 @@ TEST_F(Track, ADriveRecordedEarlierIsDrivenAgain) {
   EXPECT_NEAR(object["runs"][0]["path_length_m"].get<double>(), M_PI / 2, 0.12);
 }
 
+/// True poses tell the least motion at once, so that nothing but the last bit of a turn is left.
+TEST_F(Track, WheelsThatStickEndNoDriveOnTruePoses) {
+  test::write_text(suite_, R"(
+trajectories:
+  round: {shape: circle, radius_m: 0.55}
+  eight: {shape: eight, radius_m: 0.9}
+  slalom: {shape: slalom, length_m: 5, wave_m: 1.6, curvature_1_m: 1.8}
+groups:
+  - {name: sticky, scenario: sticky_wheels, pose: truth,
+     limits: {cross_track_rms_m: 0.01, goal_m: 0.03, goal_heading_rad: 0.05}}
+)");
+  EXPECT_EQ(json::parse(run({suite_}))["passed"], 3);
+}
+
+TEST_F(Track, AgainstAnEarlierResultItTellsWhatIsTheSame) {
+  test::write_text(suite_, "trajectories: {line: {length_m: 0.4}}\ngroups: [{name: g}]\n");
+  test::write_text(folder_ / "before.json", run({suite_}));
+  const json same = json::parse(run({suite_, "--against", folder_ / "before.json"}))["against"];
+  ASSERT_EQ(same.size(), 1U);
+  EXPECT_EQ(same[0]["what"], "g, default");
+  EXPECT_EQ(same[0]["same_to_the_bit"], 1);
+  const json other = json::parse(run({suite_, "--set", "control.heading_kp_1_s=1.5", "--against",
+                                      folder_ / "before.json"}))["against"];
+  EXPECT_EQ(other[0]["drives"], 1);
+  EXPECT_EQ(other[0]["same_to_the_bit"], 0);
+}
+
 TEST_F(Track, ARunBeyondItsLimitsFailsTheSuiteAndSaysByHowMuch) {
   test::write_text(suite_,
                    "trajectories: {line: {length_m: 0.5}}\n"

@@ -81,6 +81,23 @@ TEST(PosePredictor, KnowsThatStictionHoldsAStandingWheel) {
   EXPECT_NEAR(predictor.twist().vx, 0.04, 1e-6);
 }
 
+TEST(PosePredictor, AWheelFoundStandingTurnsOnlyWhenAskedForMoreThanItsDeadZone) {
+  PosePredictor predictor({.lag_s = 0.06, .command_delay_s = 0.0, .dead_zone_m_s = 0.04});
+  predictor.advance(0.0);
+  predictor.set_command({0.08, 0, 0});
+  predictor.advance(1.0);
+  EXPECT_NEAR(predictor.twist().vx, 0.08, 1e-6);
+  predictor.set_dead_zone(0.1);
+  predictor.advance(1.5);
+  EXPECT_NEAR(predictor.twist().vx, 0.08, 1e-6) << "what moves is taken to go on";
+  predictor.stop();
+  predictor.advance(2.0);
+  EXPECT_EQ(predictor.twist().vx, 0.0);
+  predictor.set_command({0.12, 0, 0});
+  predictor.advance(3.0);
+  EXPECT_NEAR(predictor.twist().vx, 0.12, 1e-6);
+}
+
 TEST(TurnGain, LearnsWhatScrubbingEats) {
   testing::Plant plant({.yaw_gain = 0.85}, {});
   PosePredictor predictor({.lag_s = 0.06, .command_delay_s = 0.0});
