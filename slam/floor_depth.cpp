@@ -9,7 +9,8 @@ namespace rovigo::slam {
 namespace {
 
 constexpr double kFlatM = 0.025;  // a return this near to the plane may be the floor's
-constexpr double kBelowM = 0.03, kBelowShare = 0.01;  // uneven, and seen under a wrong tilt
+constexpr double kBelowM = 0.03, kBelowShare = 0.01;  // uneven, and the rover rocks
+constexpr double kSigmasBelow = 2.0;                  // of what is not known of the plane
 constexpr double kFarthestM = 3.0;
 constexpr double kLeastFall = 0.05;  // of a ray, for the floor to be met before the walls
 // Of a frame: what is read more evenly than this is right on average. Matt floors are at 0.002,
@@ -32,8 +33,14 @@ double median(std::vector<float>& values) {
 }  // namespace
 
 FloorDepth::FloorDepth(const CameraFrame& frame, const CameraModel& camera,
-                       const DepthConfig& config, const Se3& level_from_camera)
-    : frame_(frame), camera_(camera), config_(config), level_from_camera_(level_from_camera) {
+                       const DepthConfig& config, const Se3& level_from_camera,
+                       const FloorPlane& plane)
+    : frame_(frame),
+      camera_(camera),
+      config_(config),
+      level_from_camera_(level_from_camera),
+      plane_(plane) {
+  if (plane.looks == 0) return;
   read_floor();
   roughness_ = measure_roughness();
 }
@@ -58,7 +65,9 @@ double FloorDepth::at(const Eigen::Vector2d& raw_pixel) const {
 bool FloorDepth::is_below(const Eigen::Vector2d& raw_pixel, double measured_m) const {
   const Eigen::Vector3d point =
       level_from_camera_ * camera_.unproject(camera_.undistort(raw_pixel), measured_m);
-  return point.z() < -(kBelowM + kBelowShare * measured_m);
+  const double tolerance_m = kBelowM + kSigmasBelow * plane_.sigma_height_m +
+                             (kBelowShare + kSigmasBelow * plane_.sigma_tilt_rad) * measured_m;
+  return point.z() < -tolerance_m;
 }
 
 /// Depth at which the pixel's ray meets the plane; 0 when it does not, or far away.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "slam/camera_frame.h"
+#include "slam/floor_tracker.h"
 #include "slam/se3.h"
 
 namespace rovigo::slam {
@@ -14,13 +15,14 @@ namespace rovigo::slam {
 /// One frame before the floor as it is known (`FloorTracker`).
 class FloorDepth {
  public:
-  /// `level_from_camera`: the camera over the plane z = 0. Keeps references to its arguments.
+  /// `level_from_camera`: the camera over the plane z = 0, which is as well known as `plane` says.
+  /// Keeps references to the first three.
   FloorDepth(const CameraFrame& frame, const CameraModel& camera, const DepthConfig& config,
-             const Se3& level_from_camera);
+             const Se3& level_from_camera, const FloorPlane& plane);
 
   /// The depth at a raw pixel, in metres: as measured off the floor, none (0) below it; on it drawn
   /// towards the plane, by as much as the floor around it is read worse than the plane is known, in
-  /// a frame that reads its floor unevenly.
+  /// a frame that reads its floor unevenly. Of a plane that no look has shown yet only the first.
   double at(const Eigen::Vector2d& raw_pixel) const;
 
   /// How unevenly this frame reads its floor, as a share of the depth (1 sigma); 0 where it reads
@@ -40,6 +42,7 @@ class FloorDepth {
   const CameraModel& camera_;
   const DepthConfig& config_;
   Se3 level_from_camera_;
+  FloorPlane plane_;
   int columns_ = 0, rows_ = 0;
   /// Of every so many pixels: depth as read over that of the plane, 0 off the floor.
   std::vector<float> ratios_;

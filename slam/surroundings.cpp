@@ -87,8 +87,8 @@ std::optional<FloorDepth> Surroundings::floor_under(const CameraFrame& frame) {
   if (floor_.plane().looks < kFloorLooks) {
     follow_floor(scanner_.sample(frame.depth), frame.depth_unit_m);
   }
-  if (floor_.plane().looks == 0) return std::nullopt;
-  return FloorDepth(frame, camera_, config_.depth, floor_.corrected(base_from_camera_));
+  return FloorDepth(frame, camera_, config_.depth, floor_.corrected(base_from_camera_),
+                    floor_.plane());
 }
 
 void Surroundings::look(const CameraFrame& frame, const LandmarkMap& map, int keyframe,

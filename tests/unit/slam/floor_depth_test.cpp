@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kHeightM = 0.25, kWallM = 2.0;
 const DepthConfig kConfig;
+const FloorPlane kKnown{.sigma_height_m = 0.001, .sigma_tilt_rad = 0.001, .looks = 10};
+const FloorPlane kMount{.sigma_height_m = 0.02, .sigma_tilt_rad = 0.03};  // nobody has looked yet
 
 CameraModel camera() { return CameraModel(test::pinhole()); }
 
@@ -53,7 +55,7 @@ double worst_error(const CameraFrame& frame, const FloorDepth& floor, bool as_me
 TEST(FloorDepth, DrawsAPolishedFloorsDepthsToThePlane) {
   const CameraModel model = camera();
   const CameraFrame frame = view(wavy);
-  const FloorDepth floor(frame, model, kConfig, level_from_camera());
+  const FloorDepth floor(frame, model, kConfig, level_from_camera(), kKnown);
   EXPECT_GT(worst_error(frame, floor, true), 0.04);
   EXPECT_LT(worst_error(frame, floor, false), 0.02);
 }
@@ -62,7 +64,7 @@ TEST(FloorDepth, LeavesARugAsItWasMeasured) {
   // 8 mm high and read evenly: what is measured is right, the plane 3% off.
   const CameraModel model = camera();
   const CameraFrame frame = view([](int, int) { return 1.0 - 0.008 / kHeightM; });
-  const FloorDepth floor(frame, model, kConfig, level_from_camera());
+  const FloorDepth floor(frame, model, kConfig, level_from_camera(), kKnown);
   for (int v = 330; v < 440; v += 10) {
     const double measured = frame.depth_at({320, v}, kConfig);
     EXPECT_NEAR(floor.at({320, v}), measured, 0.003 * measured) << v;
@@ -72,7 +74,7 @@ TEST(FloorDepth, LeavesARugAsItWasMeasured) {
 TEST(FloorDepth, LeavesWhatStandsOnTheFloorAsItWasMeasured) {
   const CameraModel model = camera();
   const CameraFrame frame = view(wavy);
-  const FloorDepth floor(frame, model, kConfig, level_from_camera());
+  const FloorDepth floor(frame, model, kConfig, level_from_camera(), kKnown);
   // The wall's foot: lower than the floor's tolerance, but its depth no longer grows.
   const int foot = static_cast<int>(239.5 + kHeightM * 460.0 / kWallM) - 3;
   EXPECT_LT(kHeightM - kWallM * (foot - 239.5) / 460.0, 0.025);
@@ -87,7 +89,7 @@ TEST(FloorDepth, TakesNoDepthOfWhatTheFloorMirrors) {
   const CameraModel model = camera();
   const CameraFrame frame =
       view([](int u, int v) { return u < 320 ? kWallM / floor_depth(v) : 1.0; });
-  const FloorDepth floor(frame, model, kConfig, level_from_camera());
+  const FloorDepth floor(frame, model, kConfig, level_from_camera(), kKnown);
   for (int v = 330; v < 440; v += 10) {
     ASSERT_NEAR(frame.depth_at({100, v}, kConfig), kWallM, 1e-6);
     EXPECT_EQ(floor.at({100, v}), 0.0) << v;
@@ -96,13 +98,35 @@ TEST(FloorDepth, TakesNoDepthOfWhatTheFloorMirrors) {
   for (int u = 60; u < 580; u += 20) EXPECT_EQ(floor.at({u, 100}), kWallM) << u;
 }
 
+TEST(FloorDepth, TakesNoDepthFarBelowAFloorThatOnlyTheMountTellsOf) {
+  const CameraModel model = camera();
+  const auto mirrored = [](int u, int v) { return u < 320 ? kWallM / floor_depth(v) : 1.0; };
+  const CameraFrame frame = view(mirrored);
+  // Mounted 2 cm lower than it is said to be: the floor seems to be as much too low.
+  Se3 said = level_from_camera();
+  said.translation.z() -= 0.02;
+  const FloorDepth floor(frame, model, kConfig, said, kMount);
+  for (int v = 330; v < 440; v += 10) {
+    EXPECT_EQ(floor.at({540, v}), frame.depth_at({540, v}, kConfig)) << v;
+  }
+  // From here on the wall's mirror image, at 2 m, lies 0.3 m below the floor or deeper.
+  for (int v = 370; v < 440; v += 10) EXPECT_EQ(floor.at({100, v}), 0.0) << v;
+}
+
+TEST(FloorDepth, DrawsNothingToAFloorThatOnlyTheMountTellsOf) {
+  const CameraModel model = camera();
+  const CameraFrame frame = view(wavy);
+  const FloorDepth floor(frame, model, kConfig, level_from_camera(), kMount);
+  EXPECT_EQ(worst_error(frame, floor, false), worst_error(frame, floor, true));
+}
+
 TEST(FloorDepth, KeepsDepthsThatTiltAndUnevennessPutBelowTheFloor) {
   // 5 mm under the plane and seen 0.3 deg too steeply.
   const CameraModel model = camera();
   const CameraFrame frame = view([](int, int) { return 1.0 + 0.005 / kHeightM; });
   Se3 tilted = level_from_camera();
   tilted.rotation = so3_exp({0.0, 0.005, 0.0}) * tilted.rotation;
-  const FloorDepth floor(frame, model, kConfig, tilted);
+  const FloorDepth floor(frame, model, kConfig, tilted, kKnown);
   for (int v = 310; v < 440; v += 10) {
     EXPECT_EQ(floor.at({320, v}), frame.depth_at({320, v}, kConfig)) << v;
   }
@@ -111,11 +135,12 @@ TEST(FloorDepth, KeepsDepthsThatTiltAndUnevennessPutBelowTheFloor) {
 TEST(FloorDepth, SaysHowUnevenlyTheFloorIsRead) {
   const CameraModel model = camera();
   const CameraFrame smooth = view(even), polished = view(wavy);
-  EXPECT_LT(FloorDepth(smooth, model, kConfig, level_from_camera()).roughness(), 0.002);
-  EXPECT_NEAR(FloorDepth(polished, model, kConfig, level_from_camera()).roughness(), 0.025, 0.012);
+  EXPECT_LT(FloorDepth(smooth, model, kConfig, level_from_camera(), kKnown).roughness(), 0.002);
+  EXPECT_NEAR(FloorDepth(polished, model, kConfig, level_from_camera(), kKnown).roughness(), 0.025,
+              0.012);
   CameraFrame blind;
   blind.depth = cv::Mat::zeros(480, 640, CV_16UC1);
-  EXPECT_EQ(FloorDepth(blind, model, kConfig, level_from_camera()).roughness(), 0.0);
+  EXPECT_EQ(FloorDepth(blind, model, kConfig, level_from_camera(), kKnown).roughness(), 0.0);
 }
 
 }  // namespace
