@@ -145,7 +145,8 @@ class Bundle {
     }
     link_errors_.emplace(links_, map_.config().dead_reckoning);
     link_errors_->add_to(problem_, origins_, [this](int keyframe) { return step(keyframe); });
-    for (auto& c : link_errors_->calibrations()) ordering_->AddElementToGroup(c.data(), 1);
+    // A group orders its members by address: each holds one array, so that the order never varies.
+    for (auto& c : link_errors_->calibrations()) ordering_->AddElementToGroup(c.data(), 2);
   }
 
   ceres::Solver::Summary solve() {
