@@ -7,18 +7,12 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "tests/support/pinhole.h"
+
 namespace rovigo::slam {
 namespace {
 
 constexpr int kWidth = 640, kHeight = 480;
-
-CameraModel any_camera() {
-  mrpt::img::TCamera camera;
-  camera.ncols = kWidth;
-  camera.nrows = kHeight;
-  camera.setIntrinsicParamsFromValues(460, 460, 319.5, 239.5);
-  return CameraModel(camera);
-}
 
 /// Boxes of many sizes and shades.
 cv::Mat boxes(unsigned seed) {
@@ -42,7 +36,7 @@ FeatureSet features_of(const cv::Mat& gray, const cv::Mat& depth) {
   frame.gray = gray;
   frame.depth = depth;
   const FeatureConfig config{.features_per_frame = 4000};
-  return extract_features(frame, any_camera(), config, DepthConfig{});
+  return extract_features(frame, CameraModel(test::pinhole()), config, DepthConfig{});
 }
 
 /// Mean of (pixel + mirrored pixel) less what it should be, over the corners of a level that both

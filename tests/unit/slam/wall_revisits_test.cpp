@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/support/pinhole.h"
 #include "tests/support/wall_scene.h"
 
 namespace rovigo::slam {
@@ -17,13 +18,7 @@ const std::vector<Wall> kRoom = {
 // Two views of the room's corner at (4, 2).
 const TPose2D kThere(-1, 1, 0.1), kHere(3, -1.5, 1.3);
 
-LandmarkMap empty_map() {
-  mrpt::img::TCamera camera;
-  camera.ncols = 640;
-  camera.nrows = 480;
-  camera.setIntrinsicParamsFromValues(460, 460, 319.5, 239.5);
-  return LandmarkMap(SlamConfig{}, CameraModel(camera), Se3{});
-}
+LandmarkMap empty_map() { return {SlamConfig{}, CameraModel(test::pinhole()), Se3{}}; }
 
 /// A view that stands at `truth` and is believed at `believed`.
 void add_view(LandmarkMap& map, double time_s, const std::vector<Wall>& walls, const TPose2D& truth,
